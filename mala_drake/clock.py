@@ -1,0 +1,27 @@
+"""The one clock: every period and phase offset of the diagram, in seconds.
+
+Two time scales (paper, Fig. integration_timescales): the slow one advances by planned actions, the fast one by the
+control period `TICK`. Events of one kind at the same instant see each other's *old* values, so each layer of the chain
+sense -> ground -> plan -> execute -> control acts a little after the one it listens to, within the same tick.
+"""
+
+from __future__ import annotations
+
+PLANT_STEP = 0.01
+"""Period of the discrete plant, the drivetrain, the battery and the safety monitor."""
+
+TICK = 0.2
+"""Control period h of the fast time scale; the planner and the scheduler look at the world once a tick."""
+
+SENSE_OFFSET = 0.0
+WORLD_OFFSET = 0.001
+SCHEDULE_OFFSET = 0.002
+PLAN_OFFSET = 0.003
+EXECUTE_OFFSET = 0.004
+CONTROL_OFFSET = 0.005
+METER_OFFSET = 0.006
+PATIENT_OFFSET = 0.007
+LEARN_OFFSET = 0.008
+
+ROUNDING = 1e-6
+"""Slack for comparing simulation times, which are sums of ticks."""
