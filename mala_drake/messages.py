@@ -1,0 +1,258 @@
+"""The immutable values on the diagram's abstract ports.
+
+Drake deep-copies abstract state at each unrestricted update and abstract values at each evaluation; a frozen message
+returns itself, so the copy is free. A message that starts something carries a sequence number that grows by one with
+each new start; its receiver acts once on each. Sequence 0 means "nothing yet".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+Atom = tuple[str, ...]
+"""A ground atom as in PDDL, for example `("at", "robot1", "home")`."""
+
+
+class Message:
+    """A value on an abstract port: immutable, so a copy is the value itself."""
+
+    __slots__ = ()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Message:
+        return self
+
+    def __copy__(self) -> Message:
+        return self
+
+
+class ActionKind(Enum):
+    """Who executes an action: nobody, the model predictive controller, or the in-place executor."""
+
+    NONE = "none"
+    MOVE = "move"
+    IN_PLACE = "in_place"
+
+
+class Outcome(Enum):
+    """How an action ended."""
+
+    RUNNING = "running"
+    SUCCESS = "success"  # A leg: stopped at its target. An in-place action: its physical effect was seen.
+    WAYPOINT_ALLOCATION = "waypoint_allocation"  # Too many iterations without reaching the next waypoint.
+    STEP_BUDGET = "step_budget"  # Too many control steps in one leg.
+    SOLVER_FAILURE = "solver_failure"  # The optimiser failed more often in a row than is tolerated.
+    BLOCKED = "blocked"  # No free path to the target is left.
+    INVALID_STATE = "invalid_state"  # The state estimate is not finite.
+    OUT_OF_REACH = "out_of_reach"  # The arm cannot reach the item or the table from here.
+    NOT_THERE = "not_there"  # The item was not where it was to be picked up, or did not stay where it was put.
+    OUT_OF_STOCK = "out_of_stock"
+    BATTERY_EMPTY = "battery_empty"
+    CANCELLED = "cancelled"  # Replaced by a newer action.
+
+
+@dataclass(frozen=True, slots=True)
+class Task(Message):
+    """What the scheduler wants done now. `sequence` counts the tasks of a run, from 1."""
+
+    sequence: int = 0
+    name: str = ""
+    episode: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class TaskReport(Message):
+    """What became of the task `sequence`; `failure` is empty on success."""
+
+    sequence: int = 0
+    finished: bool = False
+    success: bool = False
+    failure: str = ""
+    actions: tuple[str, ...] = ()
+    plan_cost: float = 0.0  # Of the first plan, at the planning weights.
+    predicted_features: tuple[float, ...] = (0.0,) * 5  # Summed over executed actions, as predicted at dispatch.
+    replans: int = 0
+    mismatches: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Action(Message):
+    """One planned action on its way to the layer that executes it.
+
+    `place` is where the robot is expected to be after the action; `previous_place` where it was (empty in transit).
+    """
+
+    sequence: int = 0
+    kind: ActionKind = ActionKind.NONE
+    name: str = ""
+    arguments: tuple[str, ...] = ()
+    place: str = ""
+    previous_place: str = ""
+
+    @property
+    def text(self) -> str:
+        """The action as PDDL writes it, `(name arg ...)`."""
+        return "(" + " ".join((self.name, *self.arguments)) + ")"
+
+
+@dataclass(frozen=True, slots=True)
+class PlanMessage(Message):
+    """The plan the planner is following: `actions` still to be done, the current one first."""
+
+    sequence: int = 0
+    status: str = "none"  # none | optimal | unsolvable | limit
+    actions: tuple[str, ...] = ()
+    cost: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ActionReport(Message):
+    """What became of the action `sequence`.
+
+    The terminal errors are those of a leg: metres, radians, metres per second (and radians per second).
+    """
+
+    sequence: int = 0
+    outcome: Outcome = Outcome.RUNNING
+    steps: int = 0
+    position_error: float = 0.0
+    yaw_error: float = 0.0
+    terminal_speed: float = 0.0
+    closed_loop_cost: float = 0.0
+    solves: int = 0
+    failures: int = 0
+    detail: str = ""
+
+    @property
+    def finished(self) -> bool:
+        """Whether the action has ended, well or badly."""
+        return self.sequence > 0 and self.outcome is not Outcome.RUNNING
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState(Message):
+    """The estimated state of the MPC's model: metres, radians, body-frame velocities, and the time of the estimate."""
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    forward_velocity: float = 0.0
+    lateral_velocity: float = 0.0
+    yaw_rate: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Memberships(Message):
+    """Fuzzy truth of the atoms that the grounding knows, in a fixed order."""
+
+    atoms: tuple[Atom, ...] = ()
+    values: tuple[float, ...] = ()
+
+    def value(self, atom: Atom) -> float:
+        """The membership of `atom`, 0 when it is not grounded."""
+        return dict(zip(self.atoms, self.values, strict=True)).get(atom, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolicState(Message):
+    """The crisp state observed: sorted atoms that hold, the fuzzy location (empty in transit) and the charge."""
+
+    atoms: tuple[Atom, ...] = ()
+    place: str = ""
+    charge: float = 1.0  # State of charge in [0, 1].
+
+
+@dataclass(frozen=True, slots=True)
+class WorldFacts(Message):
+    """What the robot's sensors have established about the world (not the truth the world keeps to itself).
+
+    `atoms` are sorted; `handed_item` is the item body that a dispenser holds out now, with its pose in the world.
+    """
+
+    atoms: tuple[Atom, ...] = ()
+    sequence: int = 0  # Of the last in-place action whose effects are in `atoms`.
+
+
+@dataclass(frozen=True, slots=True)
+class ArmCommand(Message):
+    """Where the gripper is to be, in the robot's base frame, or stowed when `p_BG` is None. Metres."""
+
+    p_BG: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MagnetCommand(Message):
+    """Which item bodies are wanted in the gripper's pads: (item, pad index) pairs; all others are let go."""
+
+    held: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Shape(Message):
+    """A vertical prism seen from above: an oriented rectangle with rounded corners (a disc has zero half sizes)."""
+
+    name: str = ""
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    half_length: float = 0.0  # Along its own x, metres.
+    half_width: float = 0.0  # Along its own y, metres.
+    radius: float = 0.0  # Rounding, metres.
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacles(Message):
+    """The shapes that the obstacle sensor sees."""
+
+    shapes: tuple[Shape, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedTrajectory(Message):
+    """The states the controller plans to go through: rows (x, y, yaw, v_x, v_y, omega_z)."""
+
+    states: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Preferences(Message):
+    """Preference weights (time, safety, battery, proximity, approach) on the simplex.
+
+    `planning` are the weights to plan with (with exploration), `estimate` the learner's own, `deviation` its standard
+    deviation or None for a point estimate.
+    """
+
+    planning: tuple[float, ...] = (0.2,) * 5
+    estimate: tuple[float, ...] = (0.2,) * 5
+    deviation: tuple[float, ...] | None = None
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeReport(Message):
+    """One task as it was executed, for the patient, the learners and the record. `sequence` is the task's."""
+
+    sequence: int = 0
+    task: str = ""
+    success: bool = False
+    failure: str = ""
+    actions: tuple[str, ...] = ()
+    features: tuple[float, ...] = (0.0,) * 5
+    predicted_features: tuple[float, ...] = (0.0,) * 5
+    plan_cost: float = 0.0
+    replans: int = 0
+    mismatches: int = 0
+    duration: float = 0.0  # Seconds.
+    battery_start: float = 1.0
+    battery_end: float = 1.0
+    details: tuple[tuple[str, Any], ...] = field(default=())
+
+
+@dataclass(frozen=True, slots=True)
+class Ratings(Message):
+    """The patient's ratings of episode `sequence`, one a feature; None where the patient did not rate."""
+
+    sequence: int = 0
+    values: tuple[float | None, ...] = ()
+    features: tuple[float, ...] = ()
