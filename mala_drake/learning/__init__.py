@@ -1,0 +1,17 @@
+"""The learners: each a plain class on vectors, with a system beside it that puts it in the diagram."""
+
+from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner
+from mala_drake.learning.convergence import CONVERGED_DISTANCE, convergence_episode, preference_distance
+from mala_drake.learning.preference_learner import PreferenceLearner
+from mala_drake.learning.projected_gradient import ProjectedGradient
+from mala_drake.learning.simplex import project_onto_simplex
+
+__all__ = [
+    "CONVERGED_DISTANCE",
+    "AbstractPreferenceLearner",
+    "PreferenceLearner",
+    "ProjectedGradient",
+    "convergence_episode",
+    "preference_distance",
+    "project_onto_simplex",
+]

@@ -1,0 +1,95 @@
+"""The preference learner as a system: ratings in, preference weights out."""
+
+from __future__ import annotations
+
+from pydrake.common.value import Value
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
+
+from mala_drake.clock import LEARN_OFFSET, TICK
+from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray
+from mala_drake.messages import Preferences, Ratings
+from mala_drake.randomness import keyed_generator
+
+_NAME = "preference_learner"
+
+
+class PreferenceLearner(LeafSystem):
+    """Learns the patient's preference weights, once from the ratings of each episode.
+
+    .. pydrake_system::
+
+        name: PreferenceLearner
+        input_ports:
+        - ratings
+        output_ports:
+        - preferences
+
+    The discrete state is the learner's own vector followed by the sequence number of the last ratings seen. The
+    planning weights are a function of it: their exploration noise comes from the generator of the episode they are
+    for (the one after the last ratings seen), so a learner restored at any episode goes on as if it had never
+    stopped.
+    """
+
+    def __init__(
+        self,
+        *,
+        learner: AbstractPreferenceLearner,
+        initial_state: FloatArray | None = None,
+        seed: int = 0,
+        first_episode: int = 0,
+    ) -> None:
+        """Constructs the system.
+
+        Args:
+            learner: what learns.
+            initial_state: of the learner, when it has learned before; its own initial state otherwise.
+            seed: of the run.
+            first_episode: the number of the episode that has the sequence number 1.
+
+        Raises:
+            BadInput: if the seed or the episode is negative.
+        """
+        super().__init__()
+        self._learner = learner
+        self._seed = seed
+        self._first_episode = first_episode
+        keyed_generator(seed, first_episode, _NAME)  # Refuses a bad seed now rather than in the simulation.
+        state = learner.initial_state() if initial_state is None else initial_state
+        self._ratings = self.DeclareAbstractInputPort("ratings", Value(Ratings()))
+        index = self.DeclareDiscreteState([*state, 0.0])
+        self.DeclareAbstractOutputPort(
+            "preferences",
+            lambda: Value(Preferences()),
+            self._calc_preferences,
+            prerequisites_of_calc={self.discrete_state_ticket(index)},
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
+
+    def learner_state(self, context: Context) -> FloatArray:
+        """The learner's state in `context`, for a checkpoint: `learner.save(system.learner_state(context))`."""
+        vector: FloatArray = context.get_discrete_state_vector().value()
+        return vector[:-1].copy()
+
+    def _seen(self, context: Context) -> int:
+        return int(context.get_discrete_state_vector().value()[-1])
+
+    def _calc_preferences(self, context: Context, output: Value) -> None:
+        state = self.learner_state(context)
+        generator = keyed_generator(self._seed, self._first_episode + self._seen(context), _NAME)
+        deviation = self._learner.deviation(state)
+        output.set_value(
+            Preferences(
+                planning=tuple(self._learner.planning_weights(state, generator).tolist()),
+                estimate=tuple(self._learner.estimate(state).tolist()),
+                deviation=None if deviation is None else tuple(deviation.tolist()),
+                updates=self._learner.updates(state),
+            )
+        )
+
+    def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
+        ratings = self._ratings.Eval(context)
+        state = self.learner_state(context)
+        if ratings.sequence > self._seen(context):
+            state = self._learner.update(state, ratings=ratings.values, features=ratings.features)
+        seen = max(ratings.sequence, self._seen(context))
+        discrete_state.set_value([*state, float(seen)])

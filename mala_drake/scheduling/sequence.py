@@ -1,0 +1,62 @@
+"""Tasks one after another: which names a run has, and when the next one is issued."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mala_drake.errors import BadInput
+from mala_drake.messages import Message, Task, TaskReport
+
+ALTERNATING_TASKS = ("medication", "meal")
+
+_NO_TASK = Task()
+
+
+def task_names(choice: str, *, episodes: int, first_episode: int = 0) -> tuple[str, ...]:
+    """The task of each episode from `first_episode` on.
+
+    Args:
+        choice: the name of the one task to repeat, or "alternate" for medication and meal in turn.
+        episodes: how many, >= 0.
+        first_episode: the number of the first one; even episodes of "alternate" are medication, whenever a run is
+            resumed.
+
+    Raises:
+        BadInput: if `episodes` or `first_episode` is negative, or the choice is empty.
+    """
+    for label, number in (("episodes", episodes), ("first_episode", first_episode)):
+        if number < 0:
+            raise BadInput(label, str(number), "an integer >= 0")
+    if not choice:
+        raise BadInput("task", "an empty name", "the name of a task or 'alternate'")
+    turns = ALTERNATING_TASKS if choice == "alternate" else (choice,)
+    return tuple(turns[episode % len(turns)] for episode in range(first_episode, first_episode + episodes))
+
+
+@dataclass(frozen=True, slots=True)
+class Progress(Message):
+    """How far a run has come: the task issued last, and a report of each task that has been closed, in order."""
+
+    task: Task = _NO_TASK
+    reports: tuple[TaskReport, ...] = ()
+    closed: bool = False
+
+
+def advance(progress: Progress, report: TaskReport, names: Sequence[str], *, first_episode: int = 0) -> Progress:
+    """The progress after looking at the latest task report once.
+
+    The current task is closed by a finished report with its own sequence number, whether it succeeded or not; the
+    next one is then issued in the same step. Any other report changes nothing. A run without tasks is closed at once.
+    """
+    current = progress.task.sequence
+    reports = progress.reports
+    if progress.closed:
+        return progress
+    if current > 0:
+        if not (report.finished and report.sequence == current):
+            return progress
+        reports = (*reports, report)
+    if current == len(names):
+        return Progress(progress.task, reports, closed=True)
+    return Progress(Task(current + 1, names[current], first_episode + current), reports)
