@@ -1,0 +1,72 @@
+"""The five cost features and their scales: one definition for prediction and measurement.
+
+f = (time, safety, battery, proximity, approach), 0 best and 1 worst. The planner predicts them as sums over actions; the
+feature meter measures them on the executed trajectory with the same rates (facts of the hospital case, section 4).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mala_drake.ward.congestion import RISK_LENGTH, Congestion
+from mala_drake.ward.shapes import ShapeDistances
+from mala_drake.ward.ward_map import Ward
+
+FEATURES = ("time", "safety", "battery", "proximity", "approach")
+
+COMFORT_RADIUS = 3.0
+"""Metres round the bed within which the robot is felt as near."""
+
+_STANDING_DISCOMFORT = 0.25  # Discomfort per second of a robot that stands at the bed's edge; driving adds its speed.
+
+
+@dataclass(frozen=True)
+class FeatureScales:
+    """What counts as 1, a feature and task each: seconds, risk, charge, discomfort, approach error."""
+
+    time: float = 200.0
+    safety: float = 0.30
+    battery: float = 1.0
+    proximity: float = 20.0
+    approach: float = 1.0
+
+    def as_array(self) -> NDArray[np.float64]:
+        """The five scales in the order of `FEATURES`."""
+        return np.array([self.time, self.safety, self.battery, self.proximity, self.approach])
+
+
+class FeatureRates:
+    """How fast features grow, by where the robot is and how fast it moves. Unscaled."""
+
+    def __init__(self, ward: Ward, *, bed: str = "bed") -> None:
+        """Looks at `ward`; `bed` names the furniture that the patient lies in."""
+        self._congestion = Congestion(ward)
+        beds = [piece.shape for piece in ward.furniture if piece.name == bed]
+        self._bed = ShapeDistances(beds) if beds else None
+
+    def risk_rate(self, points: ArrayLike, speeds: ArrayLike) -> NDArray[np.float64]:
+        """Risk per second at `points` (..., 2) and `speeds` (...)."""
+        return self._congestion.level(points) * np.abs(np.asarray(speeds)) / RISK_LENGTH
+
+    def discomfort_rate(self, points: ArrayLike, speeds: ArrayLike) -> NDArray[np.float64]:
+        """Discomfort per second: closeness to the bed times (standing discomfort + speed)."""
+        points = np.asarray(points, dtype=float)
+        if self._bed is None:
+            return np.zeros(points.shape[:-1])
+        distance = self._bed(points)[..., 0]
+        closeness = np.clip(1.0 - distance / COMFORT_RADIUS, 0.0, 1.0)
+        return closeness * (_STANDING_DISCOMFORT + np.abs(np.asarray(speeds)))
+
+
+def approach_error(pose: tuple[float, float, float], ideal: tuple[float, float, float]) -> float:
+    """How far a hand-over pose (x, y, yaw) is from the patient's ideal one: half by distance, half by direction.
+
+    2 m or half a turn away count as 1 each before halving; the value lies in [0, 1].
+    """
+    distance = min(math.dist(pose[:2], ideal[:2]) / 4.0, 1.0)
+    turn = abs(math.remainder(pose[2] - ideal[2], math.tau)) / math.pi
+    return 0.5 * distance + 0.5 * turn
