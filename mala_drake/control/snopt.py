@@ -1,0 +1,32 @@
+"""SNOPT, the default solver: sequential quadratic programming with a quasi-Newton Hessian."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydrake.solvers import MathematicalProgramResult, SnoptSolver
+
+from .mathematical_program_solver import MathematicalProgramSolver
+
+_ITERATION_LIMIT_CODES = (31, 32)  # Minor and major iteration limits, SNOPT user's guide, Sec. 8.6.
+
+
+class SnoptShootingSolver(MathematicalProgramSolver):
+    """`MathematicalProgramSolver` with SNOPT (Gill, Murray, Saunders, SIAM Review 47, 2005)."""
+
+    name = "snopt"
+
+    def _make_solver(self) -> SnoptSolver:
+        return SnoptSolver()
+
+    def _make_options(self, tolerance: float, iteration_limit: int) -> dict[str, Any]:
+        return {
+            "Major optimality tolerance": tolerance,
+            "Major iterations limit": iteration_limit,
+            "Iterations limit": 100 * iteration_limit,
+            "Function precision": 1e-13,
+            "Linesearch tolerance": 0.9,
+        }
+
+    def _hit_iteration_limit(self, result: MathematicalProgramResult) -> bool:
+        return result.get_solver_details().info in _ITERATION_LIMIT_CODES
