@@ -32,11 +32,21 @@ _CREEP = 0.15  # Metres per second at the sharpest corner, so that the profile n
 
 @dataclass(frozen=True, slots=True)
 class DrivePath:
-    """Samples along a leg, all of length n: arc lengths, points (n, 2), unwrapped headings, speeds, times from rest."""
+    """Samples along a leg, all of length n and not writeable, in metres, radians and seconds.
+
+    Attributes:
+        lengths: arc length from the start.
+        points: shape (n, 2).
+        headings: unwrapped direction of travel.
+        ceilings: the highest speeds from which zones, curves and the stop at the end can still be met.
+        speeds: the same when the robot starts from rest.
+        times: since that start.
+    """
 
     lengths: NDArray[np.float64]
     points: NDArray[np.float64]
     headings: NDArray[np.float64]
+    ceilings: NDArray[np.float64]
     speeds: NDArray[np.float64]
     times: NDArray[np.float64]
 
@@ -59,12 +69,13 @@ def make_drive_path(route: Route, congestion: Congestion, *, cruise_speed: float
     directions = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
     headings = np.append(directions, directions[-1])
     limits = np.minimum(congestion.speed_limit(points), cruise_speed)
-    speeds = _accelerate(np.minimum(limits, _curve_speeds(headings, lengths)), lengths)
+    ceilings = _decelerate(np.minimum(limits, _curve_speeds(headings, lengths)), lengths)
+    speeds = _accelerate(ceilings, lengths)
     # Between two samples the speed changes at constant acceleration, so its mean is the arithmetic one.
     times = np.concatenate(([0.0], np.cumsum(2 * np.diff(lengths) / np.maximum(speeds[1:] + speeds[:-1], 1e-3))))
-    for array in (lengths, points, headings, speeds, times):
+    for array in (lengths, points, headings, ceilings, speeds, times):
         array.setflags(write=False)
-    return DrivePath(lengths, points, headings, speeds, times)
+    return DrivePath(lengths, points, headings, ceilings, speeds, times)
 
 
 def _round_corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -85,7 +96,9 @@ def _round_corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
         turns = np.linspace(0.0, angle, max(3, int(np.ceil(abs(angle) / 0.15)) + 1))
         spoke = -radius * side
         cosines, sines = np.cos(turns), np.sin(turns)
-        rounded.append(center + np.stack((cosines * spoke[0] - sines * spoke[1], sines * spoke[0] + cosines * spoke[1]), 1))
+        rounded.append(
+            center + np.stack((cosines * spoke[0] - sines * spoke[1], sines * spoke[0] + cosines * spoke[1]), 1)
+        )
     rounded.append(points[-1:])
     return np.concatenate(rounded)
 
@@ -107,13 +120,19 @@ def _curve_speeds(headings: NDArray[np.float64], lengths: NDArray[np.float64]) -
     return np.maximum(TURN_RATE / np.maximum(curvature, 1e-9), _CREEP)
 
 
-def _accelerate(limits: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The highest speeds under `limits` that start and end at rest within the accelerations."""
+def _decelerate(limits: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The highest speeds under `limits` from which one can brake to each later limit and to rest at the end."""
     speeds = limits.copy()
-    speeds[0] = speeds[-1] = 0.0
-    gaps = np.diff(lengths)
-    for i, gap in enumerate(gaps):
+    speeds[-1] = 0.0
+    for i, gap in reversed(list(enumerate(np.diff(lengths)))):
+        speeds[i] = min(speeds[i], np.sqrt(speeds[i + 1] ** 2 + 2 * DECELERATION * gap))
+    return speeds
+
+
+def _accelerate(ceilings: NDArray[np.float64], lengths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The highest speeds under `ceilings` of a robot that starts from rest."""
+    speeds = ceilings.copy()
+    speeds[0] = 0.0
+    for i, gap in enumerate(np.diff(lengths)):
         speeds[i + 1] = min(speeds[i + 1], np.sqrt(speeds[i] ** 2 + 2 * ACCELERATION * gap))
-    for i in range(len(gaps) - 1, -1, -1):
-        speeds[i] = min(speeds[i], np.sqrt(speeds[i + 1] ** 2 + 2 * DECELERATION * gaps[i]))
     return speeds

@@ -160,7 +160,9 @@ class RoutePlanner:
                 return Route(points)
         return None
 
-    def segment_is_free(self, a: tuple[float, float], b: tuple[float, float], *, unmapped: Iterable[Shape] = ()) -> bool:
+    def segment_is_free(
+        self, a: tuple[float, float], b: tuple[float, float], *, unmapped: Iterable[Shape] = ()
+    ) -> bool:
         """Whether the straight segment keeps the wide clearance."""
         found = tuple(sorted(unmapped, key=lambda shape: (shape.name, shape.x, shape.y)))
         space = self._space(found, self._margins[0])

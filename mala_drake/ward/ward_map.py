@@ -86,11 +86,21 @@ class Ward:
     def walls(self) -> tuple[Furniture, ...]:
         """The four outer walls; their inner faces are `wall_half_thickness` inside the extent."""
         length, thickness, height = self.half_extent, self.wall_half_thickness, self.wall_height
-        sides = (("east", length, 0.0, 1), ("north", 0.0, length, 0), ("west", -length, 0.0, 1), ("south", 0.0, -length, 0))
+        sides = (
+            ("east", length, 0.0, 1),
+            ("north", 0.0, length, 0),
+            ("west", -length, 0.0, 1),
+            ("south", 0.0, -length, 0),
+        )
         return tuple(
             Furniture(
-                f"wall_{side}", "wall", x, y, height,
-                half_length=thickness if upright else length, half_width=length if upright else thickness,
+                f"wall_{side}",
+                "wall",
+                x,
+                y,
+                height,
+                half_length=thickness if upright else length,
+                half_width=length if upright else thickness,
             )
             for side, x, y, upright in sides
         )

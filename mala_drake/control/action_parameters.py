@@ -1,0 +1,104 @@
+"""What a planned action means for the controller: p(a) = (p^w, p^g, p^f, p^h, p^a), paper Sec. "Action-Triggered MPC".
+
+The action's target and reference enter p^w and p^g; the style below is chosen by the kind of action: near the patient
+the robot is steadier, and with something in its gripper it accelerates less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mala_drake.messages import Action, Shape
+from mala_drake.ward.congestion import Congestion
+
+from .model import ControlIndex, StateIndex
+from .parameters import (
+    ConstraintParameters,
+    DynamicsParameters,
+    InputParameters,
+    MpcParameters,
+    StageParameters,
+    TerminalParameters,
+)
+from .reference import Reference
+from .weights_to_costs import translate
+
+
+@dataclass(frozen=True, slots=True)
+class DrivingStyle:
+    """The part of p(a) that does not depend on where the robot goes."""
+
+    position_weight: float = 1.0  # Factor on Q's position entries.
+    control_weight: float = 1.0  # Factor on R.
+    clearance: float = 0.10  # Metres between body and obstacles.
+    lateral_limit: float = 2.0  # |v_x omega|, m/s^2.
+    propulsion_limit: float = 2.0  # m/s^2.
+    brake_limit: float = 2.0  # m/s^2.
+    propulsion_gain: float = 1.0  # Of the nominal model: a loaded robot answers a little less.
+
+
+EMPTY_HANDED = DrivingStyle()
+CARRYING = DrivingStyle(lateral_limit=1.2, propulsion_limit=1.5, brake_limit=1.6, propulsion_gain=0.99)
+AT_BEDSIDE = replace(CARRYING, position_weight=36.0 / 34.0, control_weight=1.18, clearance=0.12)
+"""Facts of the case: near the patient Q_pos = 36 and R = (3.6, 3.6, 2.8), the working point's 3.05 times 1.18."""
+
+
+def style_of(action: Action, *, carrying: bool) -> DrivingStyle:
+    """The driving style of an action."""
+    if action.name.startswith("approach"):
+        return AT_BEDSIDE
+    return CARRYING if carrying else EMPTY_HANDED
+
+
+def make_parameters(
+    *,
+    style: DrivingStyle,
+    weights: Sequence[float],
+    reference: Reference,
+    obstacles: Sequence[Shape],
+    congestion: Congestion,
+    dynamics: DynamicsParameters | None = None,
+) -> MpcParameters:
+    """Fills the five groups for one solve.
+
+    Args:
+        style: by the action.
+        weights: the preferences, from which Q and R follow.
+        reference: N + 1 states; the last one is the terminal target.
+        obstacles: what the sensor sees.
+        congestion: limits the speed by zone.
+        dynamics: p^f, nominal if None.
+    """
+    states = reference.states
+    state_weights, control_weights = translate(weights)
+    state_weights = state_weights * _position_factor(style.position_weight)
+    model = dynamics or DynamicsParameters(propulsion_gain=style.propulsion_gain)
+    lower, upper = InputParameters().lower.copy(), InputParameters().upper.copy()
+    lower[ControlIndex.PROPULSION], upper[ControlIndex.PROPULSION] = -style.propulsion_limit, style.propulsion_limit
+    upper[ControlIndex.BRAKE] = style.brake_limit
+    return MpcParameters(
+        terminal=TerminalParameters(target=states[-1], weights=100.0 * state_weights),
+        stage=StageParameters(
+            references=states[:-1],
+            state_weights=state_weights,
+            control_weights=control_weights * style.control_weight,
+        ),
+        constraints=ConstraintParameters(
+            speed_limits=congestion.speed_limit(states[1:, [StateIndex.X, StateIndex.Y]]),
+            obstacles=tuple(obstacles),
+            clearance=style.clearance,
+            lateral_limit=style.lateral_limit,
+        ),
+        dynamics=model,
+        inputs=InputParameters(lower, upper),
+    )
+
+
+def _position_factor(factor: float) -> NDArray[np.float64]:
+    factors = np.ones(len(StateIndex))
+    factors[[StateIndex.X, StateIndex.Y]] = factor
+    return factors

@@ -1,0 +1,258 @@
+"""The layer that moves the robot: one optimal control problem a tick, selected by the planned action."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.common.value import Value
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
+
+from mala_drake.clock import CONTROL_OFFSET, TICK
+from mala_drake.messages import (
+    Action,
+    ActionKind,
+    ActionReport,
+    MagnetCommand,
+    Message,
+    Obstacles,
+    Outcome,
+    PredictedTrajectory,
+    Preferences,
+)
+from mala_drake.ward.congestion import Congestion
+
+from .action_parameters import DrivingStyle, make_parameters, style_of
+from .leg import Leg, LegGuide, Pose, pose_errors
+from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
+from .optimal_control_problem import OptimalControlProblem
+from .parameters import StageParameters
+from .reference import make_reference
+from .solution import Solution, Status
+from .solver import Solver
+
+PARKED = (0.0, 2.0, 0.0)
+"""The control that stands still: no propulsion, full (passive) brake."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Driving(Message):
+    """The controller's state: the action it drives for, and how far it is."""
+
+    action: Action = Action()
+    style: DrivingStyle = DrivingStyle()
+    leg: Leg | None = None
+    control: tuple[float, ...] = PARKED
+    warm_start: NDArray[np.float64] | None = None
+    report: ActionReport = ActionReport()
+    predicted: PredictedTrajectory = PredictedTrajectory()
+    bad_solves: int = 0  # In a row.
+    bad_states: int = 0  # In a row.
+
+
+class MpcController(LeafSystem):
+    """Drives legs: each tick solves the optimal control problem that the planned action selects.
+
+    .. pydrake_system::
+
+        name: MpcController
+        input_ports:
+        - robot_state
+        - action
+        - obstacles
+        - preferences
+        - charge
+        - magnet
+        output_ports:
+        - control
+        - leg_report
+        - predicted_trajectory
+
+    A new action (a higher sequence number) replaces the one under way; one that is not a movement parks the robot.
+    Whatever goes wrong - no free way, failed solves, a state that is not finite, an empty battery - the robot brakes
+    and the report says what happened.
+
+    The wall time of each solve is appended to `solve_seconds`, a plain list: it depends on the machine, so it is no
+    part of the diagram's state, and nothing in the diagram reads it.
+    """
+
+    def __init__(
+        self,
+        *,
+        targets: Mapping[str, Pose],
+        guide: LegGuide,
+        congestion: Congestion,
+        problem: OptimalControlProblem,
+        solver: Solver,
+    ) -> None:
+        """Makes the controller.
+
+        Args:
+            targets: place name to the pose (x, y, yaw) to stop at, metres and radians.
+            guide: decides about legs.
+            congestion: limits the speed by zone.
+            problem: the optimal control problem that `solver` solves.
+            solver: owned by this system.
+        """
+        super().__init__()
+        self._targets = dict(targets)
+        self._guide = guide
+        self._congestion = congestion
+        self._problem = problem
+        self._solver = solver
+        self.solve_seconds: list[float] = []
+        self._robot_state = self.DeclareVectorInputPort("robot_state", STATE_SIZE)
+        self._action = self.DeclareAbstractInputPort("action", Value(Action()))
+        self._obstacles = self.DeclareAbstractInputPort("obstacles", Value(Obstacles()))
+        self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
+        self._charge = self.DeclareVectorInputPort("charge", 1)
+        self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
+        self._driving = self.DeclareAbstractState(Value(_Driving()))
+        from_state = {self.abstract_state_ticket(self._driving)}
+        self.DeclareVectorOutputPort("control", CONTROL_SIZE, self._calc_control, prerequisites_of_calc=from_state)
+        self.DeclareAbstractOutputPort(
+            "leg_report",
+            lambda: Value(ActionReport()),
+            self._calc_leg_report,
+            prerequisites_of_calc=from_state,
+        )
+        self.DeclareAbstractOutputPort(
+            "predicted_trajectory",
+            lambda: Value(PredictedTrajectory()),
+            self._calc_predicted_trajectory,
+            prerequisites_of_calc=from_state,
+        )
+        self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, CONTROL_OFFSET, self._update)
+
+    def _calc_control(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._state(context).control)
+
+    def _calc_leg_report(self, context: Context, output: Value) -> None:
+        output.set_value(self._state(context).report)
+
+    def _calc_predicted_trajectory(self, context: Context, output: Value) -> None:
+        output.set_value(self._state(context).predicted)
+
+    def _state(self, context: Context) -> _Driving:
+        return context.get_abstract_state(self._driving).get_value()
+
+    def _update(self, context: Context, state: State) -> None:
+        driving = self._state(context)
+        action = self._action.Eval(context)
+        robot_state = np.array(self._robot_state.Eval(context))
+        if action.sequence > driving.action.sequence:
+            driving = self._accept(action, carrying=bool(self._magnet.Eval(context).held))
+        if driving.report.sequence and not driving.report.finished:
+            driving = self._drive(context, driving, robot_state)
+        state.get_mutable_abstract_state(self._driving).set_value(driving)
+
+    def _accept(self, action: Action, *, carrying: bool) -> _Driving:
+        style = style_of(action, carrying=carrying)
+        if action.kind is not ActionKind.MOVE:
+            return _Driving(action=action, style=style)
+        return _Driving(action=action, style=style, report=ActionReport(sequence=action.sequence))
+
+    def _drive(self, context: Context, driving: _Driving, robot_state: NDArray[np.float64]) -> _Driving:
+        """One control step of a leg under way."""
+        if not np.isfinite(robot_state).all():
+            return self._without_state(driving)
+        if not self._charge.Eval(context)[0] > 0:
+            return self._finish(driving, robot_state, Outcome.BATTERY_EMPTY, "no charge left")
+        seen = self._obstacles.Eval(context).shapes
+        if driving.leg is None:
+            target = self._targets.get(driving.action.place)
+            if target is None:
+                return self._finish(driving, robot_state, Outcome.BLOCKED, f"no place {driving.action.place!r}")
+            driving = replace(driving, leg=self._guide.begin(target, robot_state, seen))
+        else:
+            driving = replace(driving, leg=self._guide.advance(driving.leg, robot_state, seen))
+        driving = replace(driving, bad_states=0)
+        leg = driving.leg
+        assert leg is not None
+        if leg.outcome is not Outcome.RUNNING or leg.track is None:
+            return self._finish(driving, robot_state, leg.outcome, leg.detail)
+        return self._solve(context, driving, leg, robot_state)
+
+    def _solve(self, context: Context, driving: _Driving, leg: Leg, robot_state: NDArray[np.float64]) -> _Driving:
+        assert leg.track is not None
+        reference = make_reference(
+            leg.track,
+            robot_state,
+            leg.length,
+            turning=leg.turning,
+            horizon=self._problem.horizon,
+            period=self._problem.period,
+        )
+        parameters = make_parameters(
+            style=driving.style,
+            weights=self._preferences.Eval(context).estimate,
+            reference=reference,
+            obstacles=self._obstacles.Eval(context).shapes,
+            congestion=self._congestion,
+        )
+        started = time.perf_counter()
+        solution = self._solver.solve(robot_state, parameters, driving.warm_start)
+        self.solve_seconds.append(time.perf_counter() - started)
+        report = replace(driving.report, steps=leg.steps, solves=driving.report.solves + 1)
+        if not solution.success and not _is_usable(solution):
+            return self._after_failed_solve(replace(driving, report=report), robot_state, solution)
+        stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage)
+        return replace(
+            driving,
+            control=tuple(float(value) for value in solution.controls[0]),
+            warm_start=solution.shifted(),
+            predicted=PredictedTrajectory(tuple(tuple(map(float, row)) for row in solution.states)),
+            report=replace(report, closed_loop_cost=report.closed_loop_cost + stage_cost),
+            bad_solves=0,
+        )
+
+    def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
+        """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""
+        report = replace(driving.report, failures=driving.report.failures + 1)
+        bad_solves = driving.bad_solves + 1
+        driving = replace(driving, report=report, bad_solves=bad_solves, warm_start=None, control=PARKED)
+        if bad_solves > self._guide.rules.tolerated_failures:
+            detail = f"{bad_solves} solves in a row ended as {solution.status.value}"
+            return self._finish(driving, robot_state, Outcome.SOLVER_FAILURE, detail)
+        return driving
+
+    def _without_state(self, driving: _Driving) -> _Driving:
+        """Brakes while the state estimate is not finite; reports when it stays so."""
+        bad_states = driving.bad_states + 1
+        driving = replace(driving, bad_states=bad_states, control=PARKED, warm_start=None)
+        if bad_states <= self._guide.rules.tolerated_failures:
+            return driving
+        report = replace(
+            driving.report, outcome=Outcome.INVALID_STATE, detail=f"state not finite {bad_states} times in a row"
+        )
+        return replace(driving, report=report)
+
+    def _finish(self, driving: _Driving, robot_state: NDArray[np.float64], outcome: Outcome, detail: str) -> _Driving:
+        target = self._targets.get(driving.action.place)
+        position_error, yaw_error = pose_errors(robot_state, target) if target else (0.0, 0.0)
+        report = replace(
+            driving.report,
+            outcome=outcome,
+            steps=driving.leg.steps if driving.leg else 0,
+            position_error=position_error,
+            yaw_error=yaw_error,
+            terminal_speed=abs(float(robot_state[StateIndex.FORWARD_VELOCITY])),
+            detail=detail,
+        )
+        return replace(driving, report=report, control=PARKED, warm_start=None, predicted=PredictedTrajectory())
+
+
+def _is_usable(solution: Solution) -> bool:
+    """Whether an early-stopped solve still gives admissible controls: better driven than braked."""
+    return solution.status is Status.ITERATION_LIMIT and bool(np.isfinite(solution.controls).all())
+
+
+def _stage_cost(state: NDArray[np.float64], control: NDArray[np.float64], stage: StageParameters) -> float:
+    """The tracking cost of one executed step, G(z, v; p^g): their sum is the leg's closed-loop cost."""
+    error = state - stage.references[0]
+    error[StateIndex.YAW] = math.remainder(error[StateIndex.YAW], math.tau)
+    return float(error @ (stage.state_weights * error) + control @ (stage.control_weights * control))

@@ -1,0 +1,136 @@
+"""From a drive path to the reference of one horizon: a virtual robot that drives the path as one should.
+
+The virtual robot starts where the real one is on the path and with its speed and yaw, turns on the spot while it looks
+the wrong way, else drives with the path's ceilings, and at the end turns to the target yaw. The reference thus never
+runs away from the robot and never asks a differential drive to move sideways.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mala_drake.messages import Message
+from mala_drake.ward.drive_path import ACCELERATION, DECELERATION, TURN_RATE, DrivePath
+
+from .model import STATE_SIZE, StateIndex
+
+_TURN_FIRST = 0.5  # Radians of heading error beyond which a moving start turns on the spot first.
+_ALIGNED = 0.12  # Radians within which such a turn is done.
+_MARGIN = 0.95  # Share of the speed ceiling that the reference uses, so that the limit itself stays inactive.
+_SEARCH_BACK, _SEARCH_AHEAD = 10, 60  # Samples of the path in which the robot is looked for.
+_REVERSE_SPEED = 0.3  # Metres per second at most when creeping back.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reference(Message):
+    """The reference of one horizon: states, shape (N + 1, 6), with unwrapped yaw."""
+
+    states: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track(Message):
+    """A drive path with the yaw wanted at its end, driven forward or (short ways only) in reverse."""
+
+    path: DrivePath
+    target_yaw: float
+    reverse: bool = False
+
+    @property
+    def goal(self) -> tuple[float, float]:
+        """The path's end, metres."""
+        return float(self.path.points[-1, 0]), float(self.path.points[-1, 1])
+
+    def heading(self, length: float) -> float:
+        """The robot's yaw wanted at arc length `length`."""
+        heading = float(np.interp(length, self.path.lengths, self.path.headings))
+        return heading + math.pi if self.reverse else heading
+
+    def ceiling(self, length: float) -> float:
+        """The speed wanted at most at arc length `length`, metres per second, not negative."""
+        speed = _MARGIN * float(np.interp(length, self.path.lengths, self.path.ceilings))
+        return min(speed, _REVERSE_SPEED) if self.reverse else speed
+
+    def progress(self, position: NDArray[np.float64], previous: float) -> tuple[float, float]:
+        """Arc length of the sample nearest to `position`, near the previous one, and the distance to it in metres."""
+        at = int(np.searchsorted(self.path.lengths, previous))
+        first = max(0, at - _SEARCH_BACK)
+        window = self.path.points[first : at + _SEARCH_AHEAD]
+        distances = np.hypot(*(window - position).T)
+        nearest = int(np.argmin(distances))
+        return float(self.path.lengths[first + nearest]), float(distances[nearest])
+
+
+def make_reference(
+    track: Track, state: NDArray[np.float64], length: float, *, turning: bool, horizon: int, period: float
+) -> Reference:
+    """Lets the virtual robot drive for one horizon.
+
+    Args:
+        track: what to follow.
+        state: the robot's state z, shape (6,).
+        length: arc length where the robot is on the path.
+        turning: whether the robot is in a turn on the spot, which is to be completed.
+        horizon: number of stages N.
+        period: seconds a stage.
+    """
+    states = np.zeros((horizon + 1, STATE_SIZE))
+    virtual = _Virtual(track, state, length, turning)
+    for row in states:
+        row[StateIndex.X], row[StateIndex.Y] = virtual.position()
+        row[StateIndex.YAW] = virtual.yaw
+        row[StateIndex.FORWARD_VELOCITY] = -virtual.speed if track.reverse else virtual.speed
+        row[StateIndex.YAW_RATE] = virtual.yaw_rate
+        virtual.advance(period)
+    states[1:, StateIndex.YAW_RATE] = np.diff(states[:, StateIndex.YAW]) / period
+    return Reference(states)
+
+
+def needs_turn(track: Track, yaw: float, length: float, *, turning: bool) -> bool:
+    """Whether the robot looks so far away from the path that it turns on the spot, with hysteresis."""
+    if length >= track.path.length:
+        return False
+    error = abs(math.remainder(track.heading(length) - yaw, math.tau))
+    # On a short way back to the target a small angle already misses it.
+    wide = _TURN_FIRST if track.path.length > 1.0 else 2 * _ALIGNED
+    return error > (_ALIGNED if turning else wide)
+
+
+class _Virtual:
+    def __init__(self, track: Track, state: NDArray[np.float64], length: float, turning: bool) -> None:
+        self._track = track
+        self._length = length
+        self._turning = turning
+        forward = float(state[StateIndex.FORWARD_VELOCITY])
+        self.yaw = float(state[StateIndex.YAW])
+        self.speed = max(0.0, -forward if track.reverse else forward)
+        self.yaw_rate = float(state[StateIndex.YAW_RATE])
+
+    def position(self) -> tuple[float, float]:
+        path = self._track.path
+        return (
+            float(np.interp(self._length, path.lengths, path.points[:, 0])),
+            float(np.interp(self._length, path.lengths, path.points[:, 1])),
+        )
+
+    def advance(self, period: float) -> None:
+        self._turning = needs_turn(self._track, self.yaw, self._length, turning=self._turning)
+        at_end = self._length >= self._track.path.length - 1e-6
+        ceiling = 0.0 if self._turning or at_end else self._ceiling_ahead(period)
+        slowest, fastest = self.speed - DECELERATION * period, self.speed + ACCELERATION * period
+        speed = max(0.0, min(max(ceiling, slowest), fastest))
+        self._length = min(self._length + 0.5 * (self.speed + speed) * period, self._track.path.length)
+        self.speed = speed
+        wanted = self._track.target_yaw if at_end else self._track.heading(self._length)
+        step = TURN_RATE * period if self._turning or at_end else 2 * TURN_RATE * period
+        error = math.remainder(wanted - self.yaw, math.tau)
+        self.yaw += max(-step, min(step, error))
+
+    def _ceiling_ahead(self, period: float) -> float:
+        """The ceiling where this stage ends; just ahead at standstill, so that a path is also begun and finished."""
+        ahead = self._length + max(self.speed * period, 0.02)
+        return max(self._track.ceiling(ahead), min(0.1, (self._track.path.length - self._length) / period))
