@@ -1,0 +1,87 @@
+"""The medicine boxes of the ward: what there is, where each stands, and where boxes may be put.
+
+Every pharmacy keeps one box of each medicine and every supply room one of each supplement, side by side on the ledge in
+front of the robot's standing pose. All of it follows from the map alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from mala_drake.messages import Message
+from mala_drake.ward.ward_map import Place, Ward
+
+ITEM_SIZE = (0.08, 0.06, 0.10)
+"""Depth, width and height of every box, metres."""
+
+ITEM_HALF_HEIGHT = 0.5 * ITEM_SIZE[2]
+
+LEDGE_HEIGHT = 0.78
+"""Metres above the floor of the ledge in front of whatever keeps items."""
+
+KINDS = {
+    "pharmacy": ("med_antibiotic", "med_analgesic", "med_insulin"),
+    "supply": ("supp_vitamin_d", "supp_electrolyte", "supp_omega3"),
+}
+"""What is kept at places of a category, from the robot's left to its right."""
+
+_SHELF_AHEAD = 0.70  # Metres from the standing point along its yaw.
+# The box that hangs at the gripper's other pad is 0.14 m beside the one that is picked, and all are 0.06 m wide.
+_SHELF_ASIDE = (0.24, 0.0, -0.24)  # Metres to the left of the standing pose.
+_RETURN_ASIDE = (0.50, -0.50, 0.38, -0.38)  # The outer ones are the better ones, but not always within reach.
+_TABLE_AHEAD = 0.76
+_TABLE_ASIDE = (0.14, -0.14)
+
+
+@dataclass(frozen=True, slots=True)
+class ItemPose(Message):
+    """Where a box is: its centre in the world, metres, standing upright, and its yaw, radians."""
+
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    yaw: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Item(Message):
+    """One box. Its name is `<place>/<kind>`."""
+
+    name: str
+    kind: str
+    place: str
+    shelf_pose: ItemPose
+
+
+def ward_items(ward: Ward) -> tuple[Item, ...]:
+    """All boxes of the ward, by place in the order of the map, then from left to right."""
+    return tuple(
+        Item(f"{place.name}/{kind}", kind, place.name, _spot(place, _SHELF_AHEAD, aside, LEDGE_HEIGHT))
+        for place in ward.places
+        for kind, aside in zip(KINDS.get(place.category, ()), _SHELF_ASIDE, strict=False)
+    )
+
+
+def return_spots(ward: Ward, place: str) -> tuple[ItemPose, ...]:
+    """Where a box may be put back at `place`, the best first; empty where nothing is kept."""
+    standing = ward.place.get(place)
+    if standing is None or standing.category not in KINDS:
+        return ()
+    return tuple(_spot(standing, _SHELF_AHEAD, aside, LEDGE_HEIGHT) for aside in _RETURN_ASIDE)
+
+
+def table_spots(ward: Ward, place: str) -> tuple[ItemPose, ...]:
+    """Where the middle of a pair of boxes may be put on the bedside table at `place`; empty where there is none."""
+    standing, table = ward.place.get(place), ward.furniture_of.get(place)
+    if standing is None or standing.category != "bedside" or table is None:
+        return ()
+    return tuple(_spot(standing, _TABLE_AHEAD, aside, table.height) for aside in _TABLE_ASIDE)
+
+
+def _spot(place: Place, ahead: float, aside: float, surface: float) -> ItemPose:
+    """The pose of a box on a surface of that height, seen from the standing pose."""
+    cosine, sine = math.cos(place.yaw), math.sin(place.yaw)
+    x = place.x + ahead * cosine - aside * sine
+    y = place.y + ahead * sine + aside * cosine
+    return ItemPose(x, y, surface + ITEM_HALF_HEIGHT, place.yaw)
