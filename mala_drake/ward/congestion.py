@@ -6,6 +6,8 @@ congestion level over the path, so that prediction and measurement mean one thin
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
@@ -60,7 +62,7 @@ def sample(points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     """Cuts a polyline into short pieces: their middles, shape (m, 2), and lengths, shape (m,), in metres."""
     corners = np.asarray(points, dtype=float)
     middles, lengths = [np.empty((0, 2))], [np.empty(0)]
-    for a, b in zip(corners[:-1], corners[1:], strict=True):
+    for a, b in pairwise(corners):
         length = float(np.hypot(*(b - a)))
         count = max(1, int(np.ceil(length / _SAMPLE)))
         fractions = (np.arange(count) + 0.5) / count

@@ -1,7 +1,7 @@
 """The five cost features and their scales: one definition for prediction and measurement.
 
-f = (time, safety, battery, proximity, approach), 0 best and 1 worst. The planner predicts them as sums over actions; the
-feature meter measures them on the executed trajectory with the same rates (facts of the hospital case, section 4).
+f = (time, safety, battery, proximity, approach), 0 best and 1 worst. The planner predicts them as sums over actions;
+the feature meter measures them on the executed trajectory with the same rates.
 """
 
 from __future__ import annotations

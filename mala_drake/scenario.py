@@ -1,0 +1,247 @@
+"""What to simulate: one YAML file of plain fields, each with a default, all of it validated before anything runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from mala_drake.configuration import load_typed
+from mala_drake.control.solver import SOLVER_NAMES
+from mala_drake.errors import BadInput
+from mala_drake.messages import Shape
+from mala_drake.patient.profiles import PROFILES, profile_weights
+from mala_drake.planning.care_tasks import TASK_NAMES
+from mala_drake.preferences import validated_weights
+from mala_drake.resources import models_folder
+from mala_drake.ward.items import all_items
+from mala_drake.ward.routes import BODY_RADIUS
+from mala_drake.ward.shapes import ShapeDistances
+from mala_drake.ward.ward_map import LoadWard, Ward
+
+LEARNER_NAMES = ("projected_gradient", "fixed")
+
+
+@dataclass
+class ObstacleConfig:
+    """Something that stands in the ward and is not on its map: an upright box on the floor."""
+
+    name: str = "trolley"
+    x: float = 0.0  # Metres.
+    y: float = 0.0  # Metres.
+    yaw: float = 0.0  # Radians.
+    half_length: float = 0.6  # Metres along its own x.
+    half_width: float = 0.35  # Metres along its own y.
+    height: float = 1.0  # Metres.
+
+
+@dataclass
+class RobotConfig:
+    """The physical robot, and what the controller's model does not know about it."""
+
+    hidden_truth: float = 1.0  # Scale of the errors of mass and wheel radii; 0 is the nominal robot.
+    gyroscopic_effect: float = 1.0  # Scale of the unmodelled gyroscopic coupling; 0 is off.
+    initial_charge: float = 1.0  # State of charge at the start of an episode, in [0, 1].
+    position_noise: float = 0.0  # Standard deviation of the estimated position, metres.
+    yaw_noise: float = 0.0  # Of the estimated yaw, radians.
+    velocity_noise: float = 0.0  # Of the estimated velocities, m/s and rad/s.
+
+
+@dataclass
+class WorldConfig:
+    """What can go wrong in the ward."""
+
+    wrong_item_probability: float = 0.05  # That a dispenser hands over another item than asked for.
+    wrong_items: list[str] = field(default_factory=list)  # Kinds handed over first, whatever is asked, for tests.
+    obstacles: list[ObstacleConfig] = field(default_factory=list)  # Not on the map; only the sensor sees them.
+
+
+@dataclass
+class PatientConfig:
+    """Who is cared for."""
+
+    profile: str = "speed_oriented"  # One of the five profiles, unless true_weights are given.
+    true_weights: list[float] = field(default_factory=list)  # (time, safety, battery, proximity, approach), sum 1.
+    noise: float = 0.1  # Standard deviation of a rating.
+    clip: bool = False  # Whether ratings are cut to [1, 5].
+    missing: float = 0.0  # Probability that a criterion is left unrated.
+
+
+@dataclass
+class LearnerConfig:
+    """How the preferences are learned."""
+
+    name: str = "projected_gradient"  # projected_gradient (the paper's) or fixed.
+    initial_weights: list[float] = field(default_factory=list)  # Uniform if empty.
+    learning_rate: float = 0.12
+    exploration: float = 0.15  # Standard deviation added to the weights that are planned with; decays.
+
+
+@dataclass
+class PlannerConfig:
+    """How the task planner behaves."""
+
+    max_actions: int = 60  # Actions of one task after which it has failed: K of the paper.
+    max_expansions: int = 200_000  # Of one search.
+
+
+@dataclass
+class ControlConfig:
+    """The model predictive controller and the rules of a leg."""
+
+    solver: str = "snopt"
+    horizon: int = 20  # Stages of one control period.
+    step_budget: int = 400  # Control steps of one leg.
+    waypoint_iterations: int = 50  # Control steps to the next waypoint.
+    tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
+
+
+@dataclass
+class Scenario:
+    """One run: who is cared for, in which ward, by which robot, for how many episodes."""
+
+    random_seed: int = 0
+    task: str = "medication"  # What every episode is; alternate is medication and meal in turn.
+    episodes: int = 2
+    episode_time_limit: float = 900.0  # Seconds of simulation after which an episode has failed.
+    ward: str = ""  # Path of a ward map; empty is the care centre that comes with the package.
+    robot: RobotConfig = field(default_factory=RobotConfig)
+    world: WorldConfig = field(default_factory=WorldConfig)
+    patient: PatientConfig = field(default_factory=PatientConfig)
+    learner: LearnerConfig = field(default_factory=LearnerConfig)
+    planner: PlannerConfig = field(default_factory=PlannerConfig)
+    control: ControlConfig = field(default_factory=ControlConfig)
+
+    @property
+    def true_weights(self) -> tuple[float, ...]:
+        """The patient's weights w*."""
+        return tuple(self.patient.true_weights) or profile_weights(self.patient.profile)
+
+    @property
+    def profile_name(self) -> str:
+        """The profile as results name it."""
+        return "custom" if self.patient.true_weights else self.patient.profile
+
+    def load_ward(self) -> Ward:
+        """The map of the ward."""
+        return LoadWard(self.ward or None)
+
+    @property
+    def unmapped_shapes(self) -> tuple[Shape, ...]:
+        """The obstacles that are not on the map, seen from above."""
+        return tuple(
+            Shape(o.name, o.x, o.y, o.yaw, o.half_length, o.half_width) for o in self.world.obstacles
+        )
+
+
+def LoadScenario(path: str | Path | None = None) -> Scenario:
+    """Reads and validates a scenario; fields that are missing have their defaults.
+
+    Args:
+        path: a Drake YAML file; None is the default scenario that comes with the package.
+
+    Raises:
+        BadInput: naming file, field, value and what was expected.
+    """
+    file = Path(path) if path is not None else models_folder() / "default.scenario.yaml"
+    scenario = load_typed(Scenario, file, defaults=Scenario())
+    Validate(scenario, where=file.name)
+    return scenario
+
+
+def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
+    """Checks every field of a scenario.
+
+    Raises:
+        BadInput: for the first field that cannot be simulated.
+    """
+    at = f"{where}: "
+    _finite(scenario, at)
+    _check_names(scenario, at)
+    _check_ranges(scenario, at)
+    for name, weights in (
+        ("patient.true_weights", scenario.patient.true_weights),
+        ("learner.initial_weights", scenario.learner.initial_weights),
+    ):
+        if weights:
+            validated_weights(weights, where=at + name)
+    _check_obstacles(scenario, at)
+
+
+def _finite(value: Any, at: str) -> None:
+    """Refuses numbers that are not finite anywhere in the scenario."""
+    for item in fields(value):
+        entry = getattr(value, item.name)
+        for i, element in enumerate(entry if isinstance(entry, list) else [entry]):
+            place = f"{at}{item.name}" + (f"[{i}]" if isinstance(entry, list) else "")
+            if is_dataclass(element):
+                _finite(element, place + ".")
+            elif isinstance(element, float) and not math.isfinite(element):
+                raise BadInput(place, str(element), "a finite number")
+
+
+def _one_of(at: str, value: str, names: Sequence[str]) -> None:
+    if value not in names:
+        raise BadInput(at, repr(value), "one of " + ", ".join(names))
+
+
+def _check_names(scenario: Scenario, at: str) -> None:
+    _one_of(at + "task", scenario.task, _task_choices())
+    _one_of(at + "patient.profile", scenario.patient.profile, tuple(PROFILES))
+    _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
+    _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
+    if scenario.ward and not Path(scenario.ward).is_file():
+        raise BadInput(at + "ward", repr(scenario.ward), "the path of a ward map, or nothing")
+    kinds = sorted({item.kind for item in all_items(scenario.load_ward())})
+    for i, kind in enumerate(scenario.world.wrong_items):
+        _one_of(f"{at}world.wrong_items[{i}]", kind, kinds)
+
+
+def _task_choices() -> tuple[str, ...]:
+    both = {"medication", "meal"} <= set(TASK_NAMES)
+    return (*TASK_NAMES, "alternate") if both else tuple(TASK_NAMES)
+
+
+def _check_ranges(scenario: Scenario, at: str) -> None:
+    robot, world, patient, control = scenario.robot, scenario.world, scenario.patient, scenario.control
+    ranges: tuple[tuple[str, float, float, float], ...] = (
+        ("random_seed", scenario.random_seed, 0, math.inf),
+        ("episodes", scenario.episodes, 1, 1_000_000),
+        ("episode_time_limit", scenario.episode_time_limit, 1.0, 86_400.0),
+        ("robot.hidden_truth", robot.hidden_truth, 0.0, 5.0),
+        ("robot.gyroscopic_effect", robot.gyroscopic_effect, 0.0, 5.0),
+        ("robot.initial_charge", robot.initial_charge, 0.0, 1.0),
+        ("robot.position_noise", robot.position_noise, 0.0, 1.0),
+        ("robot.yaw_noise", robot.yaw_noise, 0.0, 1.0),
+        ("robot.velocity_noise", robot.velocity_noise, 0.0, 1.0),
+        ("world.wrong_item_probability", world.wrong_item_probability, 0.0, 1.0),
+        ("patient.noise", patient.noise, 0.0, 10.0),
+        ("patient.missing", patient.missing, 0.0, 1.0),
+        ("learner.learning_rate", scenario.learner.learning_rate, 0.0, 10.0),
+        ("learner.exploration", scenario.learner.exploration, 0.0, 10.0),
+        ("planner.max_actions", scenario.planner.max_actions, 1, 10_000),
+        ("planner.max_expansions", scenario.planner.max_expansions, 1, 100_000_000),
+        ("control.horizon", control.horizon, 2, 200),
+        ("control.step_budget", control.step_budget, 1, 100_000),
+        ("control.waypoint_iterations", control.waypoint_iterations, 1, 100_000),
+        ("control.tolerated_failures", control.tolerated_failures, 0, 1_000),
+    )
+    for name, value, low, high in ranges:
+        if not low <= value <= high:
+            limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:g}"
+            raise BadInput(at + name, f"{value:g}", limits)
+
+
+def _check_obstacles(scenario: Scenario, at: str) -> None:
+    ward = scenario.load_ward()
+    home = next((place for place in ward.places if place.category == "home"), None)
+    if home is None:
+        raise BadInput(at + "ward", "a map without a place of category home", "a place where the robot starts")
+    for i, (config, shape) in enumerate(zip(scenario.world.obstacles, scenario.unmapped_shapes, strict=True)):
+        where = f"{at}world.obstacles[{i}]"
+        if min(config.half_length, config.half_width, config.height) <= 0:
+            raise BadInput(where, "a size that is not positive", "half_length, half_width and height above 0")
+        if ShapeDistances([shape])([home.x, home.y])[0] < BODY_RADIUS:
+            raise BadInput(where, f"stands on the robot at {home.name}", "an obstacle that leaves the robot free")
