@@ -56,7 +56,9 @@ class FormulaText:
                 position += 2
                 continue
             if not isinstance(item, Symbol) or not (item.is_variable if variables else item.is_name):
-                raise self._source.mistake(item, f"{shown(item)} in a typed list", "?variable" if variables else "a name")
+                raise self._source.mistake(
+                    item, f"{shown(item)} in a typed list", "?variable" if variables else "a name"
+                )
             untyped.append(item)
             position += 1
         return result + [(symbol, ("object",)) for symbol in untyped]
@@ -151,7 +153,9 @@ class FormulaText:
         if head.startswith("is-violated"):
             raise self._source.mistake(node, "'is-violated' is outside the supported fragment (preferences)")
         if not node.items or not isinstance(node.items[0], Symbol) or not node.items[0].is_name:
-            raise self._source.mistake(node, f"{shown(node)} is not a numeric expression", "a number, fluent or + - * /")
+            raise self._source.mistake(
+                node, f"{shown(node)} is not a numeric expression", "a number, fluent or + - * /"
+            )
         terms = [self._term(term, scope) for term in operands]
         return f"({' '.join([make_label(node.items[0]), *(term.lstrip('?') if ground else term for term in terms)])})"
 

@@ -129,7 +129,9 @@ class Grounder:
     def _rule(self, schema: ActionSchema, static: frozenset[Fact]) -> Rule:
         conjuncts = list(_conjuncts(schema.precondition))
         needed = [each.expression for each in schema.effects if isinstance(each, syntax.SetFluent)]
-        needed += [side for each in conjuncts if isinstance(each, syntax.Comparison) for side in (each.left, each.right)]
+        needed += [
+            side for each in conjuncts if isinstance(each, syntax.Comparison) for side in (each.left, each.right)
+        ]
         fluents = dict.fromkeys(fluent for expression in needed for fluent in _fluents(expression))
         atoms = [(each.predicate, *each.terms) for each in conjuncts if isinstance(each, syntax.Atom)]
         # An undefined static fluent rules the action out, so that tables of numbers prune bindings as facts do.
@@ -164,7 +166,7 @@ class _Builder:
         precondition = self.condition(schema.precondition, binding)
         if precondition is None:
             return None
-        effects = tuple(self._effects(schema.effects, binding, TRUE))
+        effects = _merged(self._effects(schema.effects, binding, TRUE))
         return GroundAction(f"({' '.join((schema.name, *objects))})", precondition, effects)
 
     def _effects(self, effects: Iterable[syntax.Effect], binding: Binding, guard: Condition) -> Iterator[Effect]:
@@ -258,13 +260,29 @@ def disjunction(parts: Iterable[Condition | None]) -> Condition | None:
     return Condition(choices=(possible,))
 
 
+def _merged(effects: Iterable[Effect]) -> tuple[Effect, ...]:
+    """Effects with the same condition as one."""
+    merged: dict[Condition, Effect] = {}
+    for effect in effects:
+        same = merged.get(effect.condition)
+        merged[effect.condition] = (
+            effect
+            if same is None
+            else Effect(
+                effect.condition,
+                same.added | effect.added,
+                same.deleted | effect.deleted,
+                same.updates + effect.updates,
+            )
+        )
+    return tuple(merged.values())
+
+
 def _bound(terms: Iterable[str], binding: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(binding[term] if term[0] == "?" else term for term in terms)
 
 
-def _bindings(
-    description: Description, variables: tuple[syntax.Parameter, ...], binding: Binding
-) -> Iterator[Binding]:
+def _bindings(description: Description, variables: tuple[syntax.Parameter, ...], binding: Binding) -> Iterator[Binding]:
     for objects in itertools.product(*(description.objects_of(each.types) for each in variables)):
         yield {**binding, **{each.name: value for each, value in zip(variables, objects, strict=True)}}
 
@@ -306,9 +324,7 @@ def _fluents(expression: syntax.Expression) -> Iterator[syntax.Fluent]:
             yield from _fluents(operand)
 
 
-def _may_hold(
-    test: syntax.Condition, binding: Binding, static: frozenset[Fact], changing: frozenset[str]
-) -> bool:
+def _may_hold(test: syntax.Condition, binding: Binding, static: frozenset[Fact], changing: frozenset[str]) -> bool:
     if isinstance(test, syntax.Same):
         left, right = _bound((test.left, test.right), binding)
         return left == right

@@ -125,7 +125,9 @@ def goal_text(source: Source, sections: Mapping[str, list[Group]], parents: Mapp
     """
     if not sections[":goal"] or len(sections[":goal"][0].items) != 2:
         node = sections[":goal"][0] if sections[":goal"] else source.root
-        raise source.mistake(node, "the problem has no goal" if node is source.root else "not a goal", "'(:goal condition)'")
+        raise source.mistake(
+            node, "the problem has no goal" if node is source.root else "not a goal", "'(:goal condition)'"
+        )
     condition = FormulaText(source, types=frozenset(parents)).condition(sections[":goal"][0].items[1], {})
     action = f"(:action goal--0 :parameters () :precondition {condition} :effect (and))"
     return f"(define (domain goal--0) {_REQUIREMENTS} {_types_text(parents)} {action})"
@@ -196,7 +198,9 @@ def _action_fields(source: Source, action: Group) -> dict[str, Node]:
     body = action.items[2:]
     for keyword, value in zip(body[::2], (*body[1::2], None), strict=False):
         if not isinstance(keyword, Symbol) or keyword.text not in (":parameters", ":precondition", ":effect"):
-            raise source.mistake(keyword, f"{shown(keyword)} in an action", "':parameters', ':precondition' or ':effect'")
+            raise source.mistake(
+                keyword, f"{shown(keyword)} in an action", "':parameters', ':precondition' or ':effect'"
+            )
         if value is None:
             raise source.mistake(keyword, f"nothing after '{keyword.text}'")
         if keyword.text in fields:

@@ -7,7 +7,7 @@ for the expression to be defined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -109,6 +109,24 @@ def expand(expression: Expression, ground: Callable[[Fluent], Polynomial]) -> Po
         else:
             first = first * operand.inverse()
     return first
+
+
+def evaluate(polynomial: Polynomial, values: Mapping[Fact, Fraction]) -> Fraction | None:
+    """The value of a polynomial, None if it reads what has no value or divides by zero."""
+    total = Fraction(0)
+    for monomial, coefficient in polynomial.terms:
+        product = coefficient
+        for kind, content in monomial:
+            if kind == INVERSE:
+                below = evaluate(content, values)
+                factor = 1 / below if below else None
+            else:
+                factor = values.get(content)
+            if factor is None:
+                return None
+            product *= factor
+        total += product
+    return total
 
 
 def _collect(sums: dict[Monomial, Fraction]) -> Polynomial:

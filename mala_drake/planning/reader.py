@@ -109,9 +109,7 @@ class _Description:
         self._counts_steps = _TOTAL_TIME not in self._functions
         metric_functions = self._functions | ({_TOTAL_TIME: ()} if self._counts_steps else {})
         self._in_domain = Resolver(domain_source, self._parents, constants, self._predicates, self._functions)
-        self._in_problem = Resolver(
-            problem_source, self._parents, self._objects, self._predicates, metric_functions
-        )
+        self._in_problem = Resolver(problem_source, self._parents, self._objects, self._predicates, metric_functions)
 
     def build(self) -> syntax.Description:
         """The finished task."""

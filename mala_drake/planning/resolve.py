@@ -111,9 +111,7 @@ class Resolver:
         assert isinstance(fluent, syntax.Fluent)
         return (syntax.SetFluent(_ASSIGNMENTS[type(tree)], fluent, self.expression(value, scope)),)
 
-    def _application(
-        self, tree: Any, kind: str, declared: Signatures, scope: Scope
-    ) -> tuple[str, tuple[str, ...]]:
+    def _application(self, tree: Any, kind: str, declared: Signatures, scope: Scope) -> tuple[str, tuple[str, ...]]:
         name, place = label_name(tree.name), labelled_symbol(self._source, tree.name)
         if name not in declared:
             raise self._source.mistake(place, f"undeclared {kind} '{name}'", f"one declared in :{kind}s")

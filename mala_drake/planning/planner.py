@@ -1,0 +1,102 @@
+"""Optimal planning: from a task, a state and weights to a plan."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Literal
+
+from mala_drake.errors import BadInput
+from mala_drake.planning.limits import Budget, OutOfBudget
+from mala_drake.planning.model import Model
+from mala_drake.planning.plan import Plan
+from mala_drake.planning.polynomial import evaluate
+from mala_drake.planning.projection import ProjectionHeuristic
+from mala_drake.planning.search import Heuristic, best_first, no_heuristic
+from mala_drake.planning.state import Amount, Name, SymbolicState
+from mala_drake.planning.task import Grounding, PlanningTask
+
+SearchName = Literal["astar", "ucs"]
+_SEARCHES = ("astar", "ucs")
+
+
+class Planner:
+    """Finds optimal plans for one task, again and again with other states and weights.
+
+    Args:
+        task: the task.
+        search: `astar`, or `ucs` for blind uniform-cost search, which is slow and serves as the truth to compare with.
+    """
+
+    def __init__(self, task: PlanningTask, search: SearchName = "astar") -> None:
+        if search not in _SEARCHES:
+            raise BadInput("search", f"unknown search {search!r}", f"one of {', '.join(_SEARCHES)}")
+        self.task = task
+        self._search = search
+
+    def solve(
+        self,
+        state: SymbolicState | None = None,
+        weights: Mapping[str, Amount] | Sequence[Amount] | None = None,
+        *,
+        fluents: Mapping[Name, Amount] | None = None,
+        max_expansions: int | None = None,
+        timeout: float | None = None,
+    ) -> Plan:
+        """An optimal plan from `state` (by default the initial state) to the goal.
+
+        Args:
+            state: where to start.
+            weights: values of the fluents `(w0)`, `(w1)`, ... in order, or by name.
+            fluents: values of any other fluents, such as learned ones.
+            max_expansions: give up after this many expansions; the same on every machine.
+            timeout: give up after this many seconds of wall time.
+
+        Raises:
+            BadInput: if the state, weights or fluents name what the task does not have.
+        """
+        started = time.perf_counter()
+        budget = Budget(max_expansions=max_expansions, timeout=timeout)
+        start = self.task.with_weights(state or self.task.initial_state, weights, fluents)
+        grounded = started
+        try:
+            grounding = self.task.grounding(start, budget)
+            grounded = time.perf_counter()
+            status, cost, actions = self._solve(grounding, start, budget)
+        except OutOfBudget:
+            status, cost, actions = "timeout", None, ()
+        return Plan(
+            status=status,  # type: ignore[arg-type]
+            cost=cost,
+            actions=actions,
+            expanded=budget.expanded,
+            search_ms=1e3 * (time.perf_counter() - grounded),
+            parse_ms=self.task.parse_ms,
+            ground_ms=1e3 * (grounded - started),
+        )
+
+    def _solve(
+        self, grounding: Grounding, state: SymbolicState, budget: Budget
+    ) -> tuple[str, Fraction | None, tuple[str, ...]]:
+        model = Model(grounding.operators, grounding.table, state.values)
+        start = (grounding.operators.mask(state.facts), model.numbers.initial())
+        heuristic: Heuristic = no_heuristic
+        if self._search == "astar" and grounding.graph.explore(start[0], budget):
+            heuristic = ProjectionHeuristic(grounding.graph, model)
+        solution = best_first(model, start, heuristic=heuristic, budget=budget)
+        if solution is None:
+            return "unsolvable", None, ()
+        cost = self._initial_cost(grounding, state) + model.numbers.exact(solution.cost)
+        metric = self.task.description.metric
+        if metric is not None and not metric.minimize:
+            cost = -cost
+        return "optimal", cost, tuple(operator.name for operator in solution.operators)
+
+    @staticmethod
+    def _initial_cost(grounding: Grounding, state: SymbolicState) -> Fraction:
+        split = grounding.split
+        total = evaluate(split.rest, state.values) or Fraction(0)
+        for fluent, weight in split.weights.items():
+            total += (evaluate(weight, state.values) or 0) * state.values[fluent]
+        return total
