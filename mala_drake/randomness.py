@@ -27,4 +27,6 @@ def keyed_generator(seed: int, episode: int, name: str) -> np.random.Generator:
     for label, number in (("seed", seed), ("episode", episode)):
         if number < 0:
             raise BadInput(label, str(number), "an integer >= 0")
-    return np.random.default_rng(np.random.SeedSequence((seed, episode, zlib.crc32(name.encode()))))
+    key = np.random.SeedSequence((seed, episode, zlib.crc32(name.encode())))
+    # Named rather than left to `default_rng`, because the default may change with numpy's version.
+    return np.random.Generator(np.random.PCG64(key))

@@ -8,7 +8,12 @@ from collections.abc import Callable
 
 import pytest
 import yaml
+from hypothesis import settings
 from pydrake.systems.framework import System
+
+# A shared machine makes any deadline a coin toss, and a suite that others run must not find new examples each time.
+settings.register_profile("suite", deadline=None, derandomize=True, database=None)
+settings.load_profile("suite")
 
 
 def _drawn_box(system_class: type) -> dict[str, list[str] | str]:

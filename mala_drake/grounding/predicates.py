@@ -43,7 +43,7 @@ class ChargeMembership(AbstractPredicateMembership):
     """
 
     atom: Atom
-    membership: AbstractMembership = SaturatedRamp(full=0.15, zero=0.25)  # noqa: RUF009 (frozen)
+    membership: AbstractMembership = SaturatedRamp(full=0.15, zero=0.25)
 
     def truths(self, observation: Observation) -> Mapping[Atom, float]:
         """The one atom's."""
