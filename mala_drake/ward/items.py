@@ -54,7 +54,7 @@ class Item(Message):
     shelf_pose: ItemPose
 
 
-def ward_items(ward: Ward) -> tuple[Item, ...]:
+def all_items(ward: Ward) -> tuple[Item, ...]:
     """All boxes of the ward, by place in the order of the map, then from left to right."""
     return tuple(
         Item(f"{place.name}/{kind}", kind, place.name, _spot(place, _SHELF_AHEAD, aside, LEDGE_HEIGHT))

@@ -29,7 +29,7 @@ def distance_to_standing_point(ward, pose, place):
 
 
 def test_every_kind_is_kept_at_two_places(ward):
-    items = mut.ward_items(ward)
+    items = mut.all_items(ward)
     assert len(items) == 12
     assert len({item.name for item in items}) == 12
     for category, kinds in mut.KINDS.items():
@@ -40,7 +40,7 @@ def test_every_kind_is_kept_at_two_places(ward):
 
 
 def test_items_are_named_by_place_and_kind_in_the_order_of_the_map(ward):
-    items = mut.ward_items(ward)
+    items = mut.all_items(ward)
     assert all(item.name == f"{item.place}/{item.kind}" for item in items)
     order = [place.name for place in ward.places]
     indices = [order.index(item.place) for item in items]
@@ -48,7 +48,7 @@ def test_items_are_named_by_place_and_kind_in_the_order_of_the_map(ward):
 
 
 def test_items_stand_on_the_ledge_of_the_furniture_in_front(ward):
-    for item in mut.ward_items(ward):
+    for item in mut.all_items(ward):
         piece, standing = ward.furniture_of[item.place], ward.place[item.place]
         assert outline(piece.shape).contains(footprint(item.shelf_pose)), item.name
         face = ShapeDistances([piece.shape])((standing.x, standing.y))[0]
@@ -60,7 +60,7 @@ def test_items_stand_on_the_ledge_of_the_furniture_in_front(ward):
 
 
 def test_the_box_at_the_other_pad_passes_between_the_boxes_on_the_shelf(ward):
-    pad_distance, items = 0.14, mut.ward_items(ward)
+    pad_distance, items = 0.14, mut.all_items(ward)
     for picked, other in itertools.permutations(items, 2):
         if picked.place != other.place:
             continue
@@ -76,7 +76,7 @@ def test_the_box_at_the_other_pad_passes_between_the_boxes_on_the_shelf(ward):
 
 
 def test_return_spots_are_free_and_on_the_ledge(ward):
-    items = mut.ward_items(ward)
+    items = mut.all_items(ward)
     for place in {item.place for item in items}:
         spots = mut.return_spots(ward, place)
         assert spots
@@ -102,7 +102,7 @@ def test_table_spots_hold_pairs_side_by_side(ward):
 
 def test_spots_are_near_enough_for_the_arm(ward):
     places = [place.name for place in ward.places]
-    spots = [(item.place, item.shelf_pose) for item in mut.ward_items(ward)]
+    spots = [(item.place, item.shelf_pose) for item in mut.all_items(ward)]
     spots += [(place, spot) for place in places for spot in mut.return_spots(ward, place)]
     spots += [(place, spot) for place in places for spot in mut.table_spots(ward, place)]
     assert all(0.4 < distance_to_standing_point(ward, spot, place) < 0.9 for place, spot in spots)
