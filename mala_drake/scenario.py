@@ -131,9 +131,7 @@ class Scenario:
     @property
     def unmapped_shapes(self) -> tuple[Shape, ...]:
         """The obstacles that are not on the map, seen from above."""
-        return tuple(
-            Shape(o.name, o.x, o.y, o.yaw, o.half_length, o.half_width) for o in self.world.obstacles
-        )
+        return tuple(Shape(o.name, o.x, o.y, o.yaw, o.half_length, o.half_width) for o in self.world.obstacles)
 
 
 def LoadScenario(path: str | Path | None = None) -> Scenario:

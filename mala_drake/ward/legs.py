@@ -15,6 +15,8 @@ from mala_drake.ward.ward_map import Ward
 _RUN_IN = 0.9
 """Metres of straight approach before a place, along its yaw: a differential drive does not reach a pose sideways."""
 
+_THERE = 1e-3  # Metres within which a point is the goal.
+
 
 class LegPlanner:
     """Plans legs on one ward. Places are poses; the run-in is left out where there is no room for it."""
@@ -30,8 +32,9 @@ class LegPlanner:
         unmapped = tuple(unmapped)
         x, y, yaw = pose
         goal = (x, y)
-        if math.dist(start, goal) < 1e-6:
-            return None
+        if math.dist(start, goal) < _THERE:
+            # Already there: what is left is to turn, on a path that has a direction.
+            start = (x - _THERE * math.cos(yaw), y - _THERE * math.sin(yaw))
         entry = (x - _RUN_IN * math.cos(yaw), y - _RUN_IN * math.sin(yaw))
         direct = self._planner.route(start, goal, unmapped=unmapped)
         if math.dist(start, goal) < 2 * _RUN_IN or not self._planner.segment_is_free(entry, goal, unmapped=unmapped):

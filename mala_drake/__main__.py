@@ -1,0 +1,5 @@
+"""Runs the command line with `python -m mala_drake`."""
+
+from mala_drake.cli import main
+
+main()

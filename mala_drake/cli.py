@@ -1,0 +1,156 @@
+"""The command line: `mala-drake`. Thin: each command reads its options, calls the library and prints.
+
+Heavy imports happen inside the commands, so that `--help` is quick. Exit status: 0 on success, 1 when the work itself
+failed (an episode failed, no plan exists, time ran out), 2 on bad input, told in one line on standard error.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mala_drake.errors import BadInput
+
+app = typer.Typer(
+    name="mala-drake",
+    help="A care robot that schedules, plans, drives and learns, as one Drake systems diagram.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+ScenarioFile = Annotated[Path | None, typer.Argument(help="Scenario file; the default scenario if left out.")]
+
+
+@app.command()
+def run(
+    scenario: ScenarioFile = None,
+    task: Annotated[str | None, typer.Option(help="medication; what every episode is.")] = None,
+    profile: Annotated[str | None, typer.Option(help="Patient profile, for example safety_first.")] = None,
+    episodes: Annotated[int | None, typer.Option(help="Number of episodes.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Random seed.")] = None,
+    solver: Annotated[str | None, typer.Option(help="MPC solver: snopt or ipopt.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder for episodes.jsonl and summary.json.")] = Path("results"),
+    html: Annotated[Path | None, typer.Option(help="Write a self-contained 3-D recording here.")] = None,
+    realtime_rate: Annotated[float, typer.Option(help="Simulation speed; 0 is as fast as possible.")] = 0.0,
+    meshcat: Annotated[bool, typer.Option("--meshcat", help="Show the run live in the browser.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON and nothing else.")] = False,
+) -> None:
+    """Simulate the closed loop: schedule, plan, drive, deliver, be rated, learn."""
+    from mala_drake.experiments.run import RunOptions, run_scenario
+    from mala_drake.reporting.console import RunConsole
+    from mala_drake.scenario import LoadScenario, Validate
+
+    chosen = LoadScenario(scenario)
+    chosen.task = chosen.task if task is None else task
+    if profile is not None:
+        chosen.patient.profile, chosen.patient.true_weights = profile, []
+    chosen.episodes = chosen.episodes if episodes is None else episodes
+    chosen.random_seed = chosen.random_seed if seed is None else seed
+    chosen.control.solver = chosen.control.solver if solver is None else solver
+    Validate(chosen, where="options" if scenario is None else scenario.name)
+    options = RunOptions(out=out, html=html, realtime_rate=realtime_rate, live=meshcat)
+    with RunConsole(chosen, quiet=as_json) as console:
+        summary = run_scenario(chosen, options, watcher=console)
+        if as_json:
+            typer.echo(json.dumps(summary))
+        else:
+            console.show(summary)
+    raise typer.Exit(0 if summary["totals"]["successes"] == summary["totals"]["episodes"] else 1)
+
+
+@app.command()
+def plan(
+    domain: Annotated[Path, typer.Argument(help="PDDL domain file.")],
+    problem: Annotated[Path, typer.Argument(help="PDDL problem file.")],
+    weights: Annotated[str | None, typer.Option(help="Five numbers w0,w1,w2,w3,w4.")] = None,
+    timeout: Annotated[float | None, typer.Option(help="Seconds after which to give up.")] = None,
+    search: Annotated[str, typer.Option(help="astar, or ucs (blind uniform-cost search).")] = "astar",
+    as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON and nothing else.")] = False,
+) -> None:
+    """Solve a PDDL task to optimality."""
+    from mala_drake.planning import plan_to_json, solve_files
+
+    found = solve_files(domain, problem, weights=_weights(weights), timeout=timeout, search=search)
+    result = plan_to_json(found)
+    if as_json:
+        typer.echo(json.dumps(result))
+    else:
+        _print_plan(result)
+    raise typer.Exit(0 if result["status"] == "optimal" else 1)
+
+
+def _weights(text: str | None) -> tuple[float, ...] | None:
+    if text is None:
+        return None
+    try:
+        values = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise BadInput("--weights", repr(text), "five numbers w0,w1,w2,w3,w4") from None
+    from mala_drake.preferences import validated_weights
+
+    return validated_weights(values, where="--weights")
+
+
+def _print_plan(result: dict[str, Any]) -> None:
+    for step, action in enumerate(result["actions"], start=1):
+        typer.echo(f"{step:3d}  {action}")
+    cost = "" if result["cost"] is None else f", cost {result['cost']:g}"
+    times = (
+        f"read {result['parse_ms']:.0f} ms, ground {result['ground_ms']:.0f} ms, search {result['search_ms']:.1f} ms"
+    )
+    typer.echo(f"{result['status']}{cost}; {result['expanded']} expanded; {times}")
+
+
+@app.command()
+def graph(
+    scenario: ScenarioFile = None,
+    out: Annotated[Path, typer.Option(help="File to write: .dot, .md (Mermaid), .svg or .png.")] = Path("diagram.md"),
+    max_depth: Annotated[int | None, typer.Option(help="Levels of nested diagrams to open.")] = None,
+) -> None:
+    """Draw the diagram of a scenario."""
+    from mala_drake.reporting.diagram_graph import write_graph
+    from mala_drake.scenario import LoadScenario
+    from mala_drake.station import MakeCareStation
+
+    if max_depth is not None and max_depth < 0:
+        raise BadInput("--max-depth", str(max_depth), "a whole number >= 0")
+    write_graph(MakeCareStation(LoadScenario(scenario)), out, max_depth=max_depth)
+    typer.echo(f"wrote {out}")
+
+
+@app.command()
+def bench(
+    name: Annotated[str | None, typer.Argument(help="plant, mpc or plan; all of them if left out.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,
+) -> None:
+    """Run the benchmarks and print a table."""
+    from mala_drake.experiments.bench import run_benchmarks
+    from mala_drake.reporting.console import print_rows
+
+    results = run_benchmarks(name)
+    if as_json:
+        typer.echo(json.dumps(results))
+        return
+    for title, rows in results.items():
+        print_rows(title, rows)
+
+
+def main() -> None:
+    """Runs the command line, with every mistake of the user told in one line."""
+    try:
+        app()
+    except BadInput as error:
+        sys.stderr.write(f"mala-drake: {error}\n")
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.stderr.write("mala-drake: interrupted; what was written before stays\n")
+        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()
