@@ -1,0 +1,71 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mala_drake.errors import BadInput
+from mala_drake.messages import Task, TaskReport
+from mala_drake.scheduling import Progress, advance, task_names
+
+NAMES = ("medication", "meal", "medication")
+
+
+def test_one_task_is_repeated():
+    assert task_names("medication", episodes=3) == ("medication",) * 3
+
+
+def test_alternate_takes_medication_and_meal_in_turn():
+    assert task_names("alternate", episodes=3) == ("medication", "meal", "medication")
+
+
+@given(st.integers(0, 20), st.integers(0, 20))
+def test_a_resumed_run_goes_on_where_the_whole_run_would_be(done, left):
+    whole = task_names("alternate", episodes=done + left)
+    assert task_names("alternate", episodes=left, first_episode=done) == whole[done:]
+
+
+@pytest.mark.parametrize(
+    ("choice", "options", "where"),
+    [
+        ("", {"episodes": 1}, "task"),
+        ("meal", {"episodes": -1}, "episodes"),
+        ("meal", {"episodes": 1, "first_episode": -1}, "first_episode"),
+    ],
+)
+def test_bad_choices_are_refused(choice, options, where):
+    with pytest.raises(BadInput) as error:
+        task_names(choice, **options)
+    assert error.value.where == where
+
+
+def test_the_first_task_is_issued_without_a_report():
+    assert advance(Progress(), TaskReport(), NAMES).task == Task(1, "medication", 0)
+
+
+def test_a_task_goes_on_until_its_own_report_is_finished():
+    progress = advance(Progress(), TaskReport(), NAMES)
+    for report in (TaskReport(), TaskReport(1, finished=False), TaskReport(2, finished=True)):
+        assert advance(progress, report, NAMES) == progress
+
+
+@pytest.mark.parametrize("success", [True, False])
+def test_a_finished_task_is_closed_and_the_next_one_issued(success):
+    report = TaskReport(1, finished=True, success=success)
+    progress = advance(advance(Progress(), TaskReport(), NAMES), report, NAMES)
+    assert progress == Progress(Task(2, "meal", 1), (report,))
+
+
+@given(st.integers(0, 6), st.integers(0, 50))
+def test_a_run_closes_every_task_once_in_order(count, first_episode):
+    names = task_names("alternate", episodes=count, first_episode=first_episode)
+    progress, report = Progress(), TaskReport()
+    for _ in range(3 * count + 3):  # Each report is seen several times, as a planner repeats it every tick.
+        progress = advance(progress, report, names, first_episode=first_episode)
+        if not progress.closed:
+            assert progress.task.episode == first_episode + progress.task.sequence - 1
+            report = TaskReport(progress.task.sequence, finished=True, success=True)
+    assert progress.closed
+    assert [report.sequence for report in progress.reports] == list(range(1, count + 1))
+
+
+def test_a_run_without_tasks_is_closed_at_once():
+    assert advance(Progress(), TaskReport(), ()) == Progress(closed=True)
