@@ -22,7 +22,7 @@ _COMPARE = {">": operator.gt, ">=": operator.ge, "=": operator.eq, "<=": operato
 Binding = Mapping[str, str]
 
 
-class Undefined(Exception):
+class UndefinedError(Exception):
     """An expression reads a fluent without a value, or divides by zero."""
 
 
@@ -42,7 +42,7 @@ class Interpreter:
         metric = self._description.metric
         try:
             return None if metric is None else self.number(metric.expression, state, {})
-        except Undefined:
+        except UndefinedError:
             return None
 
     def is_applicable(self, state: SymbolicState, action: str) -> bool:
@@ -68,7 +68,7 @@ class Interpreter:
         added = {_ground(e.atom, b) for e, b in fired if isinstance(e, syntax.SetFact) and e.value}
         try:
             values = self._assigned([(e, b) for e, b in fired if isinstance(e, syntax.SetFluent)], state)
-        except Undefined:
+        except UndefinedError:
             raise ValueError(f"{action}: an effect is undefined") from None
         return SymbolicState((state.facts - deleted) | added, {**state.values, **values})
 
@@ -92,21 +92,21 @@ class Interpreter:
         try:
             left = self.number(condition.left, state, binding)
             return _COMPARE[condition.operator](left, self.number(condition.right, state, binding))
-        except Undefined:
+        except UndefinedError:
             return None
 
     def number(self, expression: syntax.Expression, state: SymbolicState, binding: Binding) -> Fraction:
         """The value of an expression.
 
         Raises:
-            Undefined: if it has none.
+            UndefinedError: if it has none.
         """
         if isinstance(expression, Fraction):
             return expression
         if isinstance(expression, syntax.Fluent):
             value = state.values.get((expression.name, *(binding.get(term, term) for term in expression.terms)))
             if value is None:
-                raise Undefined
+                raise UndefinedError
             return value
         first, *rest = [self.number(operand, state, binding) for operand in expression.operands]
         if expression.operator == "-" and not rest:
@@ -121,7 +121,7 @@ class Interpreter:
                     first *= operand
                 case _:
                     if operand == 0:
-                        raise Undefined
+                        raise UndefinedError
                     first /= operand
         return first
 
@@ -166,17 +166,17 @@ def _changed(before: Fraction | None, changes: list[tuple[str, Fraction]]) -> Fr
     amounts = [amount for _, amount in changes]
     if operators == {"assign"}:
         if len(set(amounts)) > 1:
-            raise Undefined
+            raise UndefinedError
         return amounts[0]
     if before is None:
-        raise Undefined
+        raise UndefinedError
     if operators <= {"increase", "decrease"}:
         return before + sum(amount if name == "increase" else -amount for name, amount in changes)
     if not operators <= {"scale-up", "scale-down"}:
-        raise Undefined
+        raise UndefinedError
     for name, amount in changes:
         if name == "scale-down" and amount == 0:
-            raise Undefined
+            raise UndefinedError
         before = before * amount if name == "scale-up" else before / amount
     return before
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 
-class OutOfBudget(Exception):
+class OutOfBudget(Exception):  # noqa: N818 (it is an outcome, not an error)
     """The limit was reached before the answer was known."""
 
 
@@ -22,6 +22,11 @@ class Budget:
         self._most = max_expansions
         self._deadline = None if timeout is None else time.monotonic() + timeout
         self._ticks = 0
+
+    def limit_by_default(self, max_expansions: int) -> None:
+        """Sets a limit on expansions if there is no limit at all."""
+        if self._most is None and self._deadline is None:
+            self._most = max_expansions
 
     def expand(self) -> None:
         """Counts one expansion.

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from mala_drake.planning.operators import Comparison, OperatorTask
 from mala_drake.planning.polynomial import FLUENT, STATIC, Monomial, Polynomial, is_static
+from mala_drake.planning.state import DECIMALS
 from mala_drake.planning.syntax import Fact
 
 Number = int | Fraction
@@ -36,13 +37,13 @@ class NumberTable:
         self.task = task
         self.terms = tuple(_group(polynomial) for polynomial in task.polynomials)
         self.statics = sorted({name for polynomial in task.polynomials for name in polynomial.statics()})
-        self.is_stepwise = self._is_stepwise()
+        self.is_stepwise = self._steps_only()
         coefficients = [number for polynomial in task.polynomials for _, number in polynomial.terms]
         self.denominator = math.lcm(*(number.denominator for number in coefficients))
         factors = [monomial for terms in self.terms for term in terms for _, monomial in term.factors]
         self.degree = max((len(monomial) for monomial in factors), default=0)
 
-    def _is_stepwise(self) -> bool:
+    def _steps_only(self) -> bool:
         constants: set[int] = set()
         for operator in self.task.operators:
             for effect in (operator.always, *operator.sometimes):
@@ -69,21 +70,22 @@ class Numbers:
         self._index = table.task.fluents
         self._unit = 1  # One stands for this many in the integers of a stepwise task.
         self._grid = 1
-        self._is_stepwise = table.is_stepwise
-        if self._is_stepwise:
+        self.is_stepwise = table.is_stepwise
+        if self.is_stepwise:
             self._choose_unit()
         self._compiled: dict[int, tuple[Number, tuple[tuple[Number, tuple[int, ...], Monomial], ...]] | None] = {}
 
     def _choose_unit(self) -> None:
         known = [self._values[name].denominator for name in self._table.statics if name in self._values]
-        self._grid = math.lcm(*known)
+        # Including the grid of rounded floats keeps the unit the same from one solve to the next.
+        self._grid = math.lcm(10**DECIMALS, *known)
         stepped = [self._values[name].denominator for name in self._index if name in self._values]
         unit = math.lcm(self._table.denominator * self._grid**self._table.degree, *stepped)
         inverses = any(
             atom[0] != STATIC for terms in self._table.terms for t in terms for _, m in t.factors for atom in m
         )
-        self._is_stepwise = unit <= _LARGEST_UNIT and not inverses
-        self._unit = unit if self._is_stepwise else 1
+        self.is_stepwise = unit <= _LARGEST_UNIT and not inverses
+        self._unit = unit if self.is_stepwise else 1
 
     def initial(self) -> Values:
         """The values of the state's fluents."""
@@ -169,7 +171,7 @@ class Numbers:
     def _static_value(self, term: _Term) -> Number | None:
         total: Number = 0
         for coefficient, monomial in term.factors:
-            if self._is_stepwise:
+            if self.is_stepwise:
                 product = coefficient.numerator * (
                     self._unit // (coefficient.denominator * self._grid ** len(monomial))
                 )

@@ -8,17 +8,21 @@ from fractions import Fraction
 from typing import Literal
 
 from mala_drake.errors import BadInput
+from mala_drake.planning.bounds import never_gains
+from mala_drake.planning.dominance import ResourceDominance, resources
+from mala_drake.planning.exhaustive import UnboundedError, exhaustive
 from mala_drake.planning.limits import Budget, OutOfBudget
-from mala_drake.planning.model import Model
+from mala_drake.planning.model import Model, State
 from mala_drake.planning.plan import Plan
 from mala_drake.planning.polynomial import evaluate
 from mala_drake.planning.projection import ProjectionHeuristic
-from mala_drake.planning.search import Heuristic, best_first, no_heuristic
+from mala_drake.planning.search import Dominated, Heuristic, Solution, best_first, no_dominance, no_heuristic
 from mala_drake.planning.state import Amount, Name, SymbolicState
 from mala_drake.planning.task import Grounding, PlanningTask
 
 SearchName = Literal["astar", "ucs"]
 _SEARCHES = ("astar", "ucs")
+_MOST_STATES = 1_000_000  # Where all states must be visited and the caller set no limit: there may be infinitely many.
 
 
 class Planner:
@@ -79,12 +83,16 @@ class Planner:
     def _solve(
         self, grounding: Grounding, state: SymbolicState, budget: Budget
     ) -> tuple[str, Fraction | None, tuple[str, ...]]:
+        if grounding.operators.goal is None:
+            return "unsolvable", None, ()
         model = Model(grounding.operators, grounding.table, state.values)
         start = (grounding.operators.mask(state.facts), model.numbers.initial())
-        heuristic: Heuristic = no_heuristic
-        if self._search == "astar" and grounding.graph.explore(start[0], budget):
-            heuristic = ProjectionHeuristic(grounding.graph, model)
-        solution = best_first(model, start, heuristic=heuristic, budget=budget)
+        if not never_gains(model, state.values):
+            solution = self._visit_all(model, start, budget)
+        elif self._search == "ucs":
+            solution = best_first(model, start, budget=budget)
+        else:
+            solution = self._a_star(grounding, model, start, budget)
         if solution is None:
             return "unsolvable", None, ()
         cost = self._initial_cost(grounding, state) + model.numbers.exact(solution.cost)
@@ -92,6 +100,24 @@ class Planner:
         if metric is not None and not metric.minimize:
             cost = -cost
         return "optimal", cost, tuple(operator.name for operator in solution.operators)
+
+    @staticmethod
+    def _a_star(grounding: Grounding, model: Model, start: State, budget: Budget) -> Solution | None:
+        heuristic: Heuristic = no_heuristic
+        if grounding.graph.explore(start[0], budget):
+            heuristic = ProjectionHeuristic(grounding.graph, model)
+        directions = resources(model, start)
+        dominated: Dominated = ResourceDominance(directions, len(start[1])) if directions else no_dominance
+        return best_first(model, start, heuristic=heuristic, dominated=dominated, budget=budget)
+
+    def _visit_all(self, model: Model, start: State, budget: Budget) -> Solution | None:
+        budget.limit_by_default(_MOST_STATES)
+        try:
+            return exhaustive(model, start, budget=budget)
+        except UnboundedError:
+            raise BadInput(
+                self.task.description.problem_name, "no plan is optimal", "a metric that cannot improve without end"
+            ) from None
 
     @staticmethod
     def _initial_cost(grounding: Grounding, state: SymbolicState) -> Fraction:

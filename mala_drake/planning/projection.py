@@ -102,14 +102,16 @@ class ProjectionHeuristic:
         costs = [_lower_bound(step, model) for step in graph.steps]
         distances: list[Number | None] = [None] * len(graph.nodes)
         queue: list[tuple[Number, int]] = [(0, node) for node in graph.goals]
+        for node in graph.goals:
+            distances[node] = 0
         while queue:
             distance, node = heapq.heappop(queue)
-            if distances[node] is not None:
+            if distance != distances[node]:
                 continue
-            distances[node] = distance
             for before, step in graph.incoming[node]:
-                cost = costs[step]
-                if cost is not None and distances[before] is None:
+                cost, known = costs[step], distances[before]
+                if cost is not None and (known is None or distance + cost < known):
+                    distances[before] = distance + cost
                     heapq.heappush(queue, (distance + cost, before))
         self._nodes = graph.nodes
         self._distances = distances
