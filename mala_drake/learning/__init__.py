@@ -2,6 +2,7 @@
 
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner
 from mala_drake.learning.convergence import CONVERGED_DISTANCE, convergence_episode, preference_distance
+from mala_drake.learning.fixed_weights import FixedWeights
 from mala_drake.learning.preference_learner import PreferenceLearner
 from mala_drake.learning.projected_gradient import ProjectedGradient
 from mala_drake.learning.simplex import project_onto_simplex
@@ -9,6 +10,7 @@ from mala_drake.learning.simplex import project_onto_simplex
 __all__ = [
     "CONVERGED_DISTANCE",
     "AbstractPreferenceLearner",
+    "FixedWeights",
     "PreferenceLearner",
     "ProjectedGradient",
     "convergence_episode",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 from pydrake.common.value import Value
 from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 
 from mala_drake.clock import LEARN_OFFSET, TICK
+from mala_drake.errors import BadInput
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray
 from mala_drake.messages import Preferences, Ratings
 from mala_drake.randomness import keyed_generator
@@ -26,8 +28,8 @@ class PreferenceLearner(LeafSystem):
 
     The discrete state is the learner's own vector followed by the sequence number of the last ratings seen. The
     planning weights are a function of it: their exploration noise comes from the generator of the episode they are
-    for (the one after the last ratings seen), so a learner restored at any episode goes on as if it had never
-    stopped.
+    for (the one after the last ratings seen), so a learner restored at any episode, in a new system or in a fresh
+    context of this one, goes on as if it had never stopped.
     """
 
     def __init__(
@@ -56,7 +58,7 @@ class PreferenceLearner(LeafSystem):
         keyed_generator(seed, first_episode, _NAME)  # Refuses a bad seed now rather than in the simulation.
         state = learner.initial_state() if initial_state is None else initial_state
         self._ratings = self.DeclareAbstractInputPort("ratings", Value(Ratings()))
-        index = self.DeclareDiscreteState([*state, 0.0])
+        index = self.DeclareDiscreteState(np.append(state, 0.0))
         self.DeclareAbstractOutputPort(
             "preferences",
             lambda: Value(Preferences()),
@@ -69,6 +71,21 @@ class PreferenceLearner(LeafSystem):
         """The learner's state in `context`, for a checkpoint: `learner.save(system.learner_state(context))`."""
         vector: FloatArray = context.get_discrete_state_vector().value()
         return vector[:-1].copy()
+
+    def set_learner_state(self, context: Context, state: FloatArray, *, episode: int) -> None:
+        """Puts what was learned before into `context`, in which `episode` is the next one.
+
+        Args:
+            context: of this system.
+            state: of the learner, as `learner_state` gave it.
+            episode: the number of the episode to plan now, >= first_episode.
+
+        Raises:
+            BadInput: if the episode is before the first one.
+        """
+        if episode < self._first_episode:
+            raise BadInput("episode", str(episode), f"a number >= {self._first_episode}")
+        context.SetDiscreteState(np.append(state, float(episode - self._first_episode)))
 
     def _seen(self, context: Context) -> int:
         return int(context.get_discrete_state_vector().value()[-1])
@@ -92,4 +109,4 @@ class PreferenceLearner(LeafSystem):
         if ratings.sequence > self._seen(context):
             state = self._learner.update(state, ratings=ratings.values, features=ratings.features)
         seen = max(ratings.sequence, self._seen(context))
-        discrete_state.set_value([*state, float(seen)])
+        discrete_state.set_value(np.append(state, float(seen)))

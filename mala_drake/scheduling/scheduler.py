@@ -59,6 +59,21 @@ class Scheduler(LeafSystem):
         self.DeclareVectorOutputPort("closed", 1, self._calc_closed, prerequisites_of_calc=ticket)
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, SCHEDULE_OFFSET, self._update)
 
+    def start_at(self, context: Context, *, episode: int) -> None:
+        """Makes the task of `episode` the next one to be issued in `context`, as if those before were done.
+
+        So each episode of a run can have a fresh context, and a resumed run goes on where it stopped: the task keeps
+        the sequence number it has in the whole run.
+
+        Raises:
+            BadInput: unless the run has that episode (or ends just before it: then it is closed at the next tick).
+        """
+        issued = episode - self._first_episode
+        if not 0 <= issued <= len(self._tasks):
+            last = self._first_episode + len(self._tasks)
+            raise BadInput("episode", str(episode), f"a number from {self._first_episode} to {last}")
+        context.SetAbstractState(self._progress, Progress(issued=issued))
+
     def _current(self, context: Context) -> Progress:
         progress: Progress = context.get_abstract_state(self._progress).get_value()
         return progress

@@ -10,8 +10,6 @@ from mala_drake.messages import Message, Task, TaskReport
 
 ALTERNATING_TASKS = ("medication", "meal")
 
-_NO_TASK = Task()
-
 
 def task_names(choice: str, *, episodes: int, first_episode: int = 0) -> tuple[str, ...]:
     """The task of each episode from `first_episode` on.
@@ -36,9 +34,17 @@ def task_names(choice: str, *, episodes: int, first_episode: int = 0) -> tuple[s
 
 @dataclass(frozen=True, slots=True)
 class Progress(Message):
-    """How far a run has come: the task issued last, and a report of each task that has been closed, in order."""
+    """How far a run has come.
 
-    task: Task = _NO_TASK
+    Attributes:
+        task: the one issued last; `Task()` before the first.
+        issued: how many tasks of the run have been issued, those before a resumption included.
+        reports: of the tasks closed since the start or resumption, in order.
+        closed: whether the last task of the run has been closed.
+    """
+
+    task: Task = Task()
+    issued: int = 0
     reports: tuple[TaskReport, ...] = ()
     closed: bool = False
 
@@ -48,15 +54,21 @@ def advance(progress: Progress, report: TaskReport, names: Sequence[str], *, fir
 
     The current task is closed by a finished report with its own sequence number, whether it succeeded or not; the
     next one is then issued in the same step. Any other report changes nothing. A run without tasks is closed at once.
+
+    Args:
+        progress: so far.
+        report: the planner's latest.
+        names: of all tasks of the run.
+        first_episode: the number of the episode of the first of them.
     """
-    current = progress.task.sequence
-    reports = progress.reports
     if progress.closed:
         return progress
-    if current > 0:
-        if not (report.finished and report.sequence == current):
+    reports = progress.reports
+    if progress.task.sequence > 0:
+        if not (report.finished and report.sequence == progress.task.sequence):
             return progress
         reports = (*reports, report)
-    if current == len(names):
-        return Progress(progress.task, reports, closed=True)
-    return Progress(Task(current + 1, names[current], first_episode + current), reports)
+    issued = progress.issued
+    if issued == len(names):
+        return Progress(progress.task, issued, reports, closed=True)
+    return Progress(Task(issued + 1, names[issued], first_episode + issued), issued + 1, reports)

@@ -99,6 +99,26 @@ def test_a_run_restored_from_a_checkpoint_goes_on_exactly():
         assert resumed == history[sequence + 1]
 
 
+def test_a_fresh_context_for_each_episode_gives_what_one_long_simulation_gives():
+    whole = Run(seed=3)
+    history = [whole.after(rated(sequence)) for sequence in (1, 2, 3)]
+
+    state = mut.ProjectedGradient().initial_state()
+    for episode in range(3):
+        run = Run(seed=3)
+        run.system.set_learner_state(run.context, state, episode=episode)
+        if episode > 0:
+            assert run.after() == history[episode - 1]
+        assert run.after(rated(episode + 1)) == history[episode]
+        state = run.system.learner_state(run.context)
+
+
+def test_an_episode_before_the_first_one_is_refused():
+    run = Run(first_episode=4)
+    with pytest.raises(BadInput, match=r"^episode: 3; expected a number >= 4"):
+        run.system.set_learner_state(run.context, mut.ProjectedGradient().initial_state(), episode=3)
+
+
 def test_its_state_is_numbers():
     run = Run()
     run.after(rated(1))

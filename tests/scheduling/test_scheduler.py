@@ -77,6 +77,31 @@ def test_tasks_follow_one_another_until_the_run_is_closed(dut):
     assert [(report.sequence, report.success) for report in progress.reports] == [(1, True), (2, True)]
 
 
+def test_a_fresh_context_can_start_at_any_episode(dut):
+    simulator = Simulator(dut)
+    context = simulator.get_mutable_context()
+    dut.GetInputPort("task_report").FixValue(context, Value(TaskReport()))
+    dut.start_at(context, episode=7)
+    assert dut.GetOutputPort("task").Eval(context) == Task()  # Nothing is issued before the tick.
+    simulator.AdvanceTo(TICK / 2)
+    assert dut.GetOutputPort("task").Eval(context) == Task(2, "meal", 7)
+
+
+def test_starting_after_the_last_episode_closes_the_run_at_the_first_tick(dut):
+    simulator = Simulator(dut)
+    context = simulator.get_mutable_context()
+    dut.GetInputPort("task_report").FixValue(context, Value(TaskReport()))
+    dut.start_at(context, episode=8)
+    simulator.AdvanceTo(TICK / 2)
+    assert dut.GetOutputPort("closed").Eval(context) == [1.0]
+
+
+@pytest.mark.parametrize("episode", [5, 9])
+def test_an_episode_that_the_run_does_not_have_is_refused(dut, episode):
+    with pytest.raises(BadInput, match=f"^episode: {episode}; expected a number from 6 to 8"):
+        dut.start_at(dut.CreateDefaultContext(), episode=episode)
+
+
 def test_a_run_without_tasks_is_closed_at_the_first_tick():
     dut = mut.Scheduler(tasks=[])
     simulator = Simulator(dut)

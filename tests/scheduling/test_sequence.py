@@ -51,7 +51,7 @@ def test_a_task_goes_on_until_its_own_report_is_finished():
 def test_a_finished_task_is_closed_and_the_next_one_issued(success):
     report = TaskReport(1, finished=True, success=success)
     progress = advance(advance(Progress(), TaskReport(), NAMES), report, NAMES)
-    assert progress == Progress(Task(2, "meal", 1), (report,))
+    assert progress == Progress(Task(2, "meal", 1), 2, (report,))
 
 
 @given(st.integers(0, 6), st.integers(0, 50))
@@ -65,6 +65,11 @@ def test_a_run_closes_every_task_once_in_order(count, first_episode):
             report = TaskReport(progress.task.sequence, finished=True, success=True)
     assert progress.closed
     assert [report.sequence for report in progress.reports] == list(range(1, count + 1))
+
+
+def test_a_resumed_run_issues_the_next_task_under_its_own_number():
+    resumed = advance(Progress(issued=2), TaskReport(), NAMES, first_episode=10)
+    assert resumed == Progress(Task(3, "medication", 12), 3)
 
 
 def test_a_run_without_tasks_is_closed_at_once():
