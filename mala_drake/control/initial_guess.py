@@ -14,12 +14,20 @@ Vector = NDArray[np.float64]
 def initial_guesses(
     state: Vector, parameters: MpcParameters, period: float, warm_start: ArrayLike | None
 ) -> tuple[Vector, ...]:
-    """Admissible candidate controls, each of shape (N, 3): the warm start if there is one, tracking, and stopping."""
+    """Admissible candidate controls, each of shape (N, 3): the warm start if there is one, tracking, and stopping.
+
+    A warm start that is not finite is no candidate.
+    """
     references = np.vstack((parameters.stage.references[1:], parameters.terminal.target))
     at_rest = np.zeros_like(references)
     lower, upper = parameters.inputs.lower, parameters.inputs.upper
-    given = [] if warm_start is None else [np.clip(np.asarray(warm_start, dtype=float), lower, upper)]
+    given = [np.clip(w, lower, upper) for w in _usable(warm_start)]
     return (*given, *(_follow(state, wanted, parameters, period) for wanted in (references, at_rest)))
+
+
+def _usable(warm_start: ArrayLike | None) -> list[Vector]:
+    controls = np.full(1, np.nan) if warm_start is None else np.asarray(warm_start, dtype=float)
+    return [controls] if np.isfinite(controls).all() else []
 
 
 def _follow(state: Vector, wanted: Vector, parameters: MpcParameters, period: float) -> Vector:

@@ -9,6 +9,7 @@ from pydrake.solvers import IpoptSolver, MathematicalProgramResult
 from .mathematical_program_solver import MathematicalProgramSolver
 
 _ITERATION_LIMIT_CODE = -1  # Ipopt's Maximum_Iterations_Exceeded.
+_TIGHTER = 0.01  # Complementarity within tol leaves bounds that should be active a root of it away.
 
 
 class IpoptShootingSolver(MathematicalProgramSolver):
@@ -24,7 +25,7 @@ class IpoptShootingSolver(MathematicalProgramSolver):
 
     def _make_options(self, tolerance: float, iteration_limit: int) -> dict[str, Any]:
         return {
-            "tol": tolerance,
+            "tol": _TIGHTER * tolerance,
             "max_iter": iteration_limit,
             "hessian_approximation": "limited-memory",
             "limited_memory_max_history": 30,

@@ -57,20 +57,20 @@ def build_expressions(layout: ParameterLayout, period: float) -> ShootingExpress
     controls = casadi.SX.sym("controls", model.CONTROL_SIZE, layout.horizon)
     initial_state = casadi.SX.sym("initial_state", model.STATE_SIZE)
     parameters = casadi.SX.sym("parameters", layout.size)
-    pieces = layout.split(parameters, _reshape_rows)
+    pieces = parameter_pieces(layout, parameters)
 
     columns = [initial_state]
     for k in range(layout.horizon):
         columns.append(model.step(columns[k], controls[:, k], pieces["dynamics"], period))
     reached = columns[1:]
 
-    obstacle_margins = casadi.horzcat(*(_obstacle_margins(state, pieces) for state in reached))
-    limit_margins = casadi.horzcat(*(_limit_margins(state, k, pieces) for k, state in enumerate(reached)))
+    to_obstacles = casadi.horzcat(*(obstacle_margins(state, pieces) for state in reached))
+    to_limits = casadi.horzcat(*(limit_margins(state, k, pieces) for k, state in enumerate(reached)))
     obstacle_penalty, limit_penalty = pieces["constraints.obstacle_penalty"], pieces["constraints.limit_penalty"]
     cost = (
         _tracking_cost(columns, controls, pieces)
-        + obstacle_penalty * _penalty(obstacle_margins, OBSTACLE_BUFFER)
-        + limit_penalty * _penalty(limit_margins, LIMIT_BUFFER)
+        + obstacle_penalty * _penalty(to_obstacles, OBSTACLE_BUFFER)
+        + limit_penalty * _penalty(to_limits, LIMIT_BUFFER)
         + limit_penalty * _reverse_braking(reached, controls)
     )
     return ShootingExpressions(
@@ -79,11 +79,16 @@ def build_expressions(layout: ParameterLayout, period: float) -> ShootingExpress
         parameters=parameters,
         states=casadi.horzcat(*columns),
         cost=cost,
-        obstacle_margins=obstacle_margins,
-        limit_margins=limit_margins,
-        obstacle_multipliers=obstacle_penalty * hinge_slope(OBSTACLE_BUFFER - obstacle_margins, OBSTACLE_BUFFER),
-        limit_multipliers=limit_penalty * hinge_slope(LIMIT_BUFFER - limit_margins, LIMIT_BUFFER),
+        obstacle_margins=to_obstacles,
+        limit_margins=to_limits,
+        obstacle_multipliers=obstacle_penalty * hinge_slope(OBSTACLE_BUFFER - to_obstacles, OBSTACLE_BUFFER),
+        limit_multipliers=limit_penalty * hinge_slope(LIMIT_BUFFER - to_limits, LIMIT_BUFFER),
     )
+
+
+def parameter_pieces(layout: ParameterLayout, parameters: casadi.SX) -> dict[str, casadi.SX]:
+    """The pieces of the symbol p by name, matrices in their shapes."""
+    return layout.split(parameters, _reshape_rows)
 
 
 def _tracking_cost(columns: list[casadi.SX], controls: casadi.SX, pieces: dict[str, Any]) -> casadi.SX:
@@ -96,15 +101,16 @@ def _tracking_cost(columns: list[casadi.SX], controls: casadi.SX, pieces: dict[s
     return cost
 
 
-def _obstacle_margins(state: casadi.SX, pieces: dict[str, Any]) -> casadi.SX:
+def obstacle_margins(state: casadi.SX, pieces: dict[str, Any]) -> casadi.SX:
+    """Distance less required distance to every obstacle slot, shape (M, 1), metres."""
     obstacles, required = pieces["constraints.obstacles"], pieces["constraints.required_distance"]
     x, y = state[StateIndex.X], state[StateIndex.Y]
     rows = (obstacles[m, :] for m in range(obstacles.shape[0]))
     return casadi.vertcat(*(signed_distance(x, y, row) - required for row in rows))
 
 
-def _limit_margins(state: casadi.SX, stage: int, pieces: dict[str, Any]) -> casadi.SX:
-    """Distances to the path limits of `LIMITS`, non-negative where they hold."""
+def limit_margins(state: casadi.SX, stage: int, pieces: dict[str, Any]) -> casadi.SX:
+    """Distances to the path limits in the order of `LIMITS`, shape (6, 1), after stage `stage`."""
     forward, yaw_rate = state[StateIndex.FORWARD_VELOCITY], state[StateIndex.YAW_RATE]
     yaw_rate_limit, lateral_limit = pieces["constraints.yaw_rate_limit"], pieces["constraints.lateral_limit"]
     return casadi.vertcat(

@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 
 from mala_drake.messages import Message
 
+from .layout import ParameterLayout
+from .model import CONTROL_SIZE, STATE_SIZE
+from .shooting import LIMITS
+
 Vector = NDArray[np.float64]
 
 
@@ -56,19 +60,19 @@ class Solution(Message):
         return np.vstack((self.controls[1:], self.controls[-1:]))
 
 
-def invalid_solution(horizon: int, slots: int, limits: int, control_size: int, state_size: int) -> Solution:
+def invalid_solution(layout: ParameterLayout) -> Solution:
     """The answer to an input that is not finite: zero controls, no trajectory."""
-    nothing = np.full((horizon + 1, state_size), np.nan)
+    controls = np.zeros((layout.horizon, CONTROL_SIZE))
     return Solution(
         status=Status.INVALID_INPUT,
-        controls=read_only(np.zeros((horizon, control_size))),
-        states=read_only(nothing),
+        controls=read_only(controls),
+        states=read_only(np.full((layout.horizon + 1, STATE_SIZE), np.nan)),
         cost=np.nan,
         iterations=0,
-        control_duals=read_only(np.zeros((horizon, control_size))),
-        obstacle_duals=read_only(np.zeros((horizon, slots))),
-        limit_duals=read_only(np.zeros((horizon, limits))),
-        obstacle_margins=read_only(np.full((horizon, slots), np.nan)),
+        control_duals=read_only(controls.copy()),
+        obstacle_duals=read_only(np.zeros((layout.horizon, layout.slots))),
+        limit_duals=read_only(np.zeros((layout.horizon, len(LIMITS)))),
+        obstacle_margins=read_only(np.full((layout.horizon, layout.slots), np.nan)),
         optimality=np.nan,
     )
 

@@ -1,0 +1,109 @@
+"""The shooting problem as a `MathematicalProgram`, built once and evaluated through CasADi."""
+
+from __future__ import annotations
+
+from operator import methodcaller
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.autodiffutils import AutoDiffXd
+from pydrake.solvers import MathematicalProgram, MathematicalProgramResult, SolverInterface, SolverOptions
+
+from .buffered_function import BufferedFunction
+from .model import CONTROL_SIZE
+from .optimal_control_problem import OptimalControlProblem
+from .parameters import InputParameters
+
+Vector = NDArray[np.float64]
+
+_UNUSABLE = 1e10  # A finite value that no line search accepts, for points where the cost does not exist.
+_value = methodcaller("value")
+
+
+class ShootingProgram:
+    """Minimises scale * cost(U_0 + T w) over w subject to the input set.
+
+    Quasi-Newton methods start from the identity as Hessian, while the condition number of the shooting problem is about
+    1e5. With T T' the inverse of a Gauss-Newton Hessian at U_0 the identity is a good guess, and a solve takes a fifth
+    of the evaluations; the price is that the box becomes 3 N linear rows. T, the bounds and the parameters change by
+    value between runs.
+    """
+
+    def __init__(self, problem: OptimalControlProblem) -> None:
+        self._function = BufferedFunction(problem.cost_and_gradient)
+        self._point = self._function.arguments[0].reshape(-1, order="F")
+        self._gradient = self._function.results[1].reshape(-1, order="F")
+        self._horizon = problem.horizon
+        size = CONTROL_SIZE * problem.horizon
+        self._origin, self._transform, self._scale = np.zeros(size), np.eye(size), 1.0
+        self._program = MathematicalProgram()
+        self._variables = self._program.NewContinuousVariables(size, "w")
+        self._program.AddCost(self._evaluate, self._variables)
+        self._box = self._program.AddLinearConstraint(np.eye(size), np.zeros(size), np.zeros(size), self._variables)
+        self.failure: Exception | None = None
+        self.evaluations = 0
+
+    def set_parameters(self, initial_state: Vector, packed: Vector) -> None:
+        """Chooses z_0, shape (6,), and p for the evaluations to come."""
+        self._function.arguments[1][:, 0] = initial_state
+        self._function.arguments[2][:, 0] = packed
+
+    def evaluate(self, controls: Vector) -> tuple[float, Vector]:
+        """Cost and gradient, shape (N, 3), at `controls`, shape (N, 3)."""
+        self._point[:] = controls.ravel()
+        self._function()
+        return float(self._function.results[0][0, 0]), self._gradient.reshape(self._horizon, CONTROL_SIZE).copy()
+
+    def run(
+        self,
+        solver: SolverInterface,
+        options: SolverOptions,
+        *,
+        origin: Vector,
+        hessian: Vector,
+        scale: float,
+        inputs: InputParameters,
+    ) -> tuple[MathematicalProgramResult, Vector, Vector]:
+        """Runs `solver` from the controls `origin`, shape (N, 3).
+
+        Args:
+            solver: a solver of smooth costs with linear constraints.
+            options: its options.
+            origin: where to start.
+            hessian: a positive definite model of the cost's Hessian there, shape (3 N, 3 N).
+            scale: factor on the cost, in which the solver's tolerance is measured.
+            inputs: p^a.
+
+        Returns:
+            The result, the controls, shape (N, 3), and the multipliers of the input set, shape (N, 3).
+        """
+        self.failure, self.evaluations, self._scale = None, 0, scale
+        self._origin = origin.ravel().copy()
+        self._transform = np.linalg.inv(np.linalg.cholesky(scale * hessian)).T.copy()
+        lower, upper = (np.tile(bound, self._horizon) - self._origin for bound in (inputs.lower, inputs.upper))
+        self._box.evaluator().UpdateCoefficients(self._transform, lower, upper)
+        result = solver.Solve(self._program, np.zeros(origin.size), options)
+        controls = (self._origin + self._transform @ result.GetSolution(self._variables)).reshape(origin.shape)
+        duals = result.GetDualSolution(self._box).reshape(origin.shape) / scale
+        return result, np.clip(controls, inputs.lower, inputs.upper), duals
+
+    def _evaluate(self, variables: NDArray[Any]) -> AutoDiffXd:
+        """The scaled cost at Drake's AutoDiff point.
+
+        The cost is bound to all variables in order, so the derivatives of the argument are the identity and the
+        gradient is the derivative as it stands. An exception here could make a solver run on: it is kept, and told.
+        """
+        try:
+            self.evaluations += 1
+            offset = np.fromiter(map(_value, variables), float, len(variables))
+            self._point[:] = self._origin + self._transform @ offset
+            self._function()
+            cost = float(self._function.results[0][0, 0]) * self._scale
+            gradient = (self._gradient * self._scale) @ self._transform
+            if np.isfinite(cost) and np.isfinite(gradient).all():
+                return AutoDiffXd(cost, gradient)
+            self.failure = ArithmeticError("cost or gradient is not finite")
+        except Exception as error:
+            self.failure = error
+        return AutoDiffXd(_UNUSABLE, np.zeros(len(variables)))
