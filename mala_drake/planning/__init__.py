@@ -2,7 +2,18 @@
 
 from mala_drake.planning.plan import Plan, plan_to_json
 from mala_drake.planning.planner import Planner
+from mala_drake.planning.solve_files import solve_files
 from mala_drake.planning.state import SymbolicState
 from mala_drake.planning.task import PlanningTask
+from mala_drake.planning.validation import Verdict, validate_plan
 
-__all__ = ["Plan", "Planner", "PlanningTask", "SymbolicState", "plan_to_json"]
+__all__ = [
+    "Plan",
+    "Planner",
+    "PlanningTask",
+    "SymbolicState",
+    "Verdict",
+    "plan_to_json",
+    "solve_files",
+    "validate_plan",
+]

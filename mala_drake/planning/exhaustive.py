@@ -47,7 +47,11 @@ def exhaustive(model: Model, start: State, *, budget: Budget) -> Solution | None
         return None
     useful = _leading_to(goals, edges, len(states))
     distances, parents = _shortest([each for each in edges if useful[each.end]], len(states), budget)
-    reached = {index: distances[index] + rest for index, rest in goals.items() if distances[index] is not None}
+    reached = {}
+    for index, rest in goals.items():
+        distance = distances[index]
+        if distance is not None:
+            reached[index] = distance + rest
     best = min(reached, key=lambda index: (reached[index], index))
     base = model.rest(start)
     return Solution(_path(parents, best), reached[best] - (base or 0))
@@ -56,7 +60,7 @@ def exhaustive(model: Model, start: State, *, budget: Budget) -> Solution | None
 def _explore(model: Model, start: State, budget: Budget) -> tuple[list[State], list[_Edge]]:
     numbers = {start: 0}
     states = [start]
-    edges = []
+    edges: list[_Edge] = []
     for index, state in enumerate(states):
         budget.expand()
         for operator, successor, cost in model.successors(state):

@@ -170,7 +170,9 @@ class _Builder:
         return GroundAction(f"({' '.join((schema.name, *objects))})", precondition, effects)
 
     def _effects(self, effects: Iterable[syntax.Effect], binding: Binding, guard: Condition) -> Iterator[Effect]:
-        added, deleted, updates = set(), set(), []
+        added: set[Fact] = set()
+        deleted: set[Fact] = set()
+        updates: list[Update] = []
         for effect, extended in _expand_effects(self._description, effects, binding, into_conditional=False):
             if isinstance(effect, syntax.SetFact):
                 fact = (effect.atom.predicate, *_bound(effect.atom.terms, extended))

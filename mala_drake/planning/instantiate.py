@@ -65,7 +65,7 @@ def instantiate(
     Args:
         rules: one an action.
         facts: what is true at the start; static facts first make the joins short.
-        tick: called once a binding; may raise to give up.
+        tick: called often; may raise to give up.
     """
     reached = Reached()
     queue = deque(facts)
@@ -94,19 +94,23 @@ def instantiate(
                 accept(number, binding)
     while queue:
         fact = queue.popleft()
+        tick()
         reached.take(fact)
         for number, position in users.get(fact[0], ()):
             rule = rules[number]
             start = _match(rule, rule.atoms[position], fact, {})
             if start is not None:
                 rest = rule.atoms[:position] + rule.atoms[position + 1 :]
-                for binding in _join(rule, rest, start, reached):
+                for binding in _join(rule, rest, start, reached, tick):
                     accept(number, binding)
     ordered = sorted(found, key=lambda key: (rules[key[0]].schema.name, key[1]))
     return [(rules[number].schema, objects) for number, objects in ordered], reached.facts
 
 
-def _join(rule: Rule, atoms: tuple[Fact, ...], binding: Binding, reached: Reached) -> Iterator[Binding]:
+def _join(
+    rule: Rule, atoms: tuple[Fact, ...], binding: Binding, reached: Reached, tick: Callable[[], None]
+) -> Iterator[Binding]:
+    tick()
     if not atoms:
         yield from _complete(rule, binding)
         return
@@ -116,7 +120,7 @@ def _join(rule: Rule, atoms: tuple[Fact, ...], binding: Binding, reached: Reache
     for fact in tuple(choices[best]):
         extended = _match(rule, atoms[best], fact, binding)
         if extended is not None:
-            yield from _join(rule, rest, extended, reached)
+            yield from _join(rule, rest, extended, reached, tick)
 
 
 def _match(rule: Rule, pattern: Fact, fact: Fact, binding: Binding) -> Binding | None:

@@ -2,9 +2,9 @@
 
 `pddl` keeps conjuncts, actions and initial facts in sets: equal ones merge, their order changes with the hash seed, and
 no node knows its place in the file. So the text handed to it gives every occurrence of a name its own label,
-`<kind><name>--<index>`, where index counts the words of the file. Nothing merges, sorting by index restores the order of
-the file, numbers stay exact (the label leads back to the word), a name may even equal a keyword, and an error found in
-the tree can name line and column.
+`<kind><name>--<index>`, where index counts the words of the file. Nothing merges, sorting by index restores the order
+of the file, numbers stay exact (the label leads back to the word), a name may even equal a keyword, and an error found
+in the tree can name line and column.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ def split_metric(task: GroundTask, metric: Polynomial | None, defined: Collectio
     updates = [update for action in task.actions for effect in action.effects for update in effect.updates]
     assigned = frozenset(update.fluent for update in updates if update.kind != "add")
     free = {update.fluent for update in updates} - read - assigned
-    weights: dict[Fact, Polynomial] = {fluent: ZERO for fluent in sorted(free & set(defined))}
+    weights: dict[Fact, Polynomial] = dict.fromkeys(sorted(free & set(defined)), ZERO)
     terms = metric.terms if metric is not None else ()
     for monomial, _ in terms:
         changing = [atom for atom in monomial if not is_static(atom)]

@@ -14,11 +14,32 @@ from mala_drake.planning.source import Group, Node, Source, Symbol
 
 _REQUIREMENTS = "(:requirements :typing :adl :numeric-fluents :fluents :action-costs)"
 _KNOWN_REQUIREMENTS = frozenset(
-    ":strips :typing :equality :adl :negative-preconditions :disjunctive-preconditions :existential-preconditions "
-    ":universal-preconditions :quantified-preconditions :conditional-effects :fluents :numeric-fluents :action-costs "
-    # Declared by files that do not use them; a use is refused where it stands.
-    ":derived-predicates :durative-actions :duration-inequalities :timed-initial-literals :preferences :constraints "
-    ":object-fluents :continuous-effects :time :domain-axioms".split()
+    (
+        ":strips",
+        ":typing",
+        ":equality",
+        ":adl",
+        ":negative-preconditions",
+        ":disjunctive-preconditions",
+        ":existential-preconditions",
+        ":universal-preconditions",
+        ":quantified-preconditions",
+        ":conditional-effects",
+        ":fluents",
+        ":numeric-fluents",
+        ":action-costs",
+        # For files that declare more than they use; a use is refused where it stands.
+        ":derived-predicates",
+        ":durative-actions",
+        ":duration-inequalities",
+        ":timed-initial-literals",
+        ":preferences",
+        ":constraints",
+        ":object-fluents",
+        ":continuous-effects",
+        ":time",
+        ":domain-axioms",
+    )
 )
 _OUTSIDE = {
     ":derived": "derived predicates",
@@ -120,8 +141,9 @@ def problem_text(source: Source, sections: Mapping[str, list[Group]], parents: M
 
 
 def goal_text(source: Source, sections: Mapping[str, list[Group]], parents: Mapping[str, str]) -> str:
-    """The goal as the precondition of an action in a domain of its own: `pddl` refuses or, imply, forall, exists
-    and = in the goal of a problem, but reads them there.
+    """The goal as the precondition of an action, in a domain of its own.
+
+    `pddl` refuses or, imply, forall, exists and = in the goal of a problem, but reads them there.
     """
     if not sections[":goal"] or len(sections[":goal"][0].items) != 2:
         node = sections[":goal"][0] if sections[":goal"] else source.root
@@ -159,7 +181,7 @@ def _objects_text(source: Source, writer: FormulaText, groups: list[Group], keyw
 
 
 def _signatures_text(source: Source, writer: FormulaText, groups: list[Group], keyword: str) -> list[str]:
-    entries = []
+    entries: list[str] = []
     items = list(_items(groups))
     while items:
         node = items.pop(0)

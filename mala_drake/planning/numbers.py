@@ -30,18 +30,28 @@ class _Term:
     factors: tuple[tuple[Fraction, Monomial], ...]
 
 
+# A polynomial with the constants filled in: what is constant, then factor, fluents and inverses of each other monomial.
+_Filled = tuple[Number, tuple[tuple[Number, tuple[int, ...], Monomial], ...]]
+
+
 class NumberTable:
     """What can be prepared about a task's polynomials before the constants are known."""
 
     def __init__(self, task: OperatorTask) -> None:
         self.task = task
         self.terms = tuple(_group(polynomial) for polynomial in task.polynomials)
-        self.statics = sorted({name for polynomial in task.polynomials for name in polynomial.statics()})
+        self.statics = tuple(sorted({name for polynomial in task.polynomials for name in polynomial.statics()}))
         self.is_stepwise = self._steps_only()
         coefficients = [number for polynomial in task.polynomials for _, number in polynomial.terms]
         self.denominator = math.lcm(*(number.denominator for number in coefficients))
         factors = [monomial for terms in self.terms for term in terms for _, monomial in term.factors]
         self.degree = max((len(monomial) for monomial in factors), default=0)
+        self.has_static_inverses = any(kind != STATIC for monomial in factors for kind, _ in monomial)
+        self._readers: dict[Fact, list[int]] = {}
+        for index, polynomial in enumerate(task.polynomials):
+            for name in polynomial.statics():
+                self._readers.setdefault(name, []).append(index)
+        self._last: tuple[int, tuple[Fraction | None, ...], dict[int, _Filled | None]] = (0, (), {})
 
     def _steps_only(self) -> bool:
         constants: set[int] = set()
@@ -54,6 +64,26 @@ class NumberTable:
         if self.task.rest is not None or any(not _is_linear(terms) for terms in self.terms):
             return False
         return all(not term.changing for index in constants for term in self.terms[index])
+
+    def remembered(self, unit: int, values: Mapping[Fact, Fraction]) -> dict[int, _Filled | None]:
+        """The polynomials of the last solve that read none of the constants that changed since.
+
+        The dictionary returned is the one that the next call looks at, so that what is added to it is kept.
+        """
+        current = tuple(map(values.get, self.statics))
+        last_unit, last, filled = self._last
+        if unit != last_unit:
+            filled = {}
+        else:
+            changed = [
+                name
+                for name, old, new in zip(self.statics, last, current, strict=True)
+                if old is not new and old != new
+            ]
+            stale = {index for name in changed for index in self._readers[name]}
+            filled = {index: value for index, value in filled.items() if index not in stale}
+        self._last = (unit, current, filled)
+        return filled
 
 
 class Numbers:
@@ -70,22 +100,22 @@ class Numbers:
         self._index = table.task.fluents
         self._unit = 1  # One stands for this many in the integers of a stepwise task.
         self._grid = 1
-        self.is_stepwise = table.is_stepwise
+        self._scaled: dict[Fact, int] = {}
+        self.is_stepwise = table.is_stepwise and not table.has_static_inverses
         if self.is_stepwise:
             self._choose_unit()
-        self._compiled: dict[int, tuple[Number, tuple[tuple[Number, tuple[int, ...], Monomial], ...]] | None] = {}
+        self._filled = table.remembered(self._unit if self.is_stepwise else 0, values)
 
     def _choose_unit(self) -> None:
-        known = [self._values[name].denominator for name in self._table.statics if name in self._values]
+        known = {name: self._values[name] for name in self._table.statics if name in self._values}
         # Including the grid of rounded floats keeps the unit the same from one solve to the next.
-        self._grid = math.lcm(10**DECIMALS, *known)
+        self._grid = math.lcm(10**DECIMALS, *(value.denominator for value in known.values()))
         stepped = [self._values[name].denominator for name in self._index if name in self._values]
         unit = math.lcm(self._table.denominator * self._grid**self._table.degree, *stepped)
-        inverses = any(
-            atom[0] != STATIC for terms in self._table.terms for t in terms for _, m in t.factors for atom in m
-        )
-        self.is_stepwise = unit <= _LARGEST_UNIT and not inverses
-        self._unit = unit if self.is_stepwise else 1
+        self.is_stepwise = unit <= _LARGEST_UNIT
+        if self.is_stepwise:
+            self._unit = unit
+            self._scaled = {name: value.numerator * (self._grid // value.denominator) for name, value in known.items()}
 
     def initial(self) -> Values:
         """The values of the state's fluents."""
@@ -145,18 +175,16 @@ class Numbers:
             return None
         return compiled[0], {fluents[0]: factor for factor, fluents, _ in compiled[1]}
 
-    def _compile(self, index: int) -> tuple[Number, tuple[tuple[Number, tuple[int, ...], Monomial], ...]] | None:
-        if index not in self._compiled:
-            self._compiled[index] = self._fill_in(self._table.terms[index])
-        return self._compiled[index]
+    def _compile(self, index: int) -> _Filled | None:
+        if index not in self._filled:
+            self._filled[index] = self._fill_in(self._table.terms[index])
+        return self._filled[index]
 
-    def _fill_in(
-        self, terms: tuple[_Term, ...]
-    ) -> tuple[Number, tuple[tuple[Number, tuple[int, ...], Monomial], ...]] | None:
+    def _fill_in(self, terms: tuple[_Term, ...]) -> _Filled | None:
         total: Number = 0
         filled = []
         for term in terms:
-            number = self._static_value(term)
+            number = self._scaled_value(term) if self.is_stepwise else self._static_value(term)
             if number is None:
                 return None
             if not term.changing:
@@ -168,28 +196,29 @@ class Numbers:
         # comparison must carry it twice.
         return (total * self._unit if filled else total), tuple(filled)
 
-    def _static_value(self, term: _Term) -> Number | None:
-        total: Number = 0
+    def _scaled_value(self, term: _Term) -> int | None:
+        total = 0
+        scaled = self._scaled
         for coefficient, monomial in term.factors:
-            if self.is_stepwise:
-                product = coefficient.numerator * (
-                    self._unit // (coefficient.denominator * self._grid ** len(monomial))
-                )
-                for _, name in monomial:
-                    value = self._values.get(name)
-                    if value is None:
-                        return None
-                    product *= value.numerator * (self._grid // value.denominator)
-                total += product
-            else:
-                exact = coefficient
-                for kind, name in monomial:
-                    factor = self._values.get(name) if kind == STATIC else self._inverse(name, ())
-                    if factor is None:
-                        return None
-                    exact = exact * factor
-                total = _tidy(total + exact)
+            product = coefficient.numerator * (self._unit // (coefficient.denominator * self._grid ** len(monomial)))
+            for _, name in monomial:
+                if name not in scaled:
+                    return None
+                product *= scaled[name]
+            total += product
         return total
+
+    def _static_value(self, term: _Term) -> Number | None:
+        total = Fraction(0)
+        for coefficient, monomial in term.factors:
+            product = coefficient
+            for kind, name in monomial:
+                factor = self._values.get(name) if kind == STATIC else self._inverse(name, ())
+                if factor is None:
+                    return None
+                product = product * factor
+            total += product
+        return _tidy(total)
 
     def _inverse(self, polynomial: Polynomial, values: Values) -> Fraction | None:
         total = Fraction(0)

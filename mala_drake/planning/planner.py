@@ -9,7 +9,7 @@ from typing import Literal
 
 from mala_drake.errors import BadInput
 from mala_drake.planning.bounds import never_gains
-from mala_drake.planning.dominance import ResourceDominance, resources
+from mala_drake.planning.dominance import ResourceDominance
 from mala_drake.planning.exhaustive import UnboundedError, exhaustive
 from mala_drake.planning.limits import Budget, OutOfBudget
 from mala_drake.planning.model import Model, State
@@ -106,7 +106,7 @@ class Planner:
         heuristic: Heuristic = no_heuristic
         if grounding.graph.explore(start[0], budget):
             heuristic = ProjectionHeuristic(grounding.graph, model)
-        directions = resources(model, start)
+        directions = grounding.resources.find(model, start)
         dominated: Dominated = ResourceDominance(directions, len(start[1])) if directions else no_dominance
         return best_first(model, start, heuristic=heuristic, dominated=dominated, budget=budget)
 

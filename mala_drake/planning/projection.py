@@ -117,6 +117,7 @@ class ProjectionHeuristic:
         self._distances = distances
 
     def __call__(self, state: State) -> Number | None:
+        """The bound in a state, None if no way to the goal is left."""
         return self._distances[self._nodes[state[0]]]
 
 
@@ -140,7 +141,7 @@ def _lower_bound(step: _Step, model: Model) -> Number | None:
 
 
 def _fired(operator: Operator, mask: int) -> tuple[list[Effect], list[Effect]]:
-    certain, uncertain = [operator.always], []
+    certain, uncertain = [operator.always], list[Effect]()
     for effect in operator.sometimes:
         if may_hold(effect.condition, mask):
             (uncertain if effect.condition.reads_numbers else certain).append(effect)

@@ -6,6 +6,7 @@ The one module that knows `pddl`: its trees come in, `syntax` trees go out.
 from __future__ import annotations
 
 import sys
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -28,7 +29,7 @@ from mala_drake.planning.normalise import (
     read_sections,
     read_types,
 )
-from mala_drake.planning.resolve import Resolver
+from mala_drake.planning.resolve import Resolver, Signatures
 from mala_drake.planning.source import Source, parse_source
 
 _TOTAL_TIME = "total-time"
@@ -105,9 +106,8 @@ class _Description:
         self._declare_objects(problem_source, problem.objects)
         self._predicates = _signatures(domain_source, domain.predicates)
         self._functions = _signatures(domain_source, domain.functions)
-        # `total-time` without a declaration is the number of steps.
-        self._counts_steps = _TOTAL_TIME not in self._functions
-        metric_functions = self._functions | ({_TOTAL_TIME: ()} if self._counts_steps else {})
+        # A metric may read `total-time` without a declaration: it is the number of steps.
+        metric_functions: Signatures = {_TOTAL_TIME: (), **self._functions}
         self._in_domain = Resolver(domain_source, self._parents, constants, self._predicates, self._functions)
         self._in_problem = Resolver(problem_source, self._parents, self._objects, self._predicates, metric_functions)
 
@@ -118,13 +118,13 @@ class _Description:
         goal_action = next(iter(self._goal.actions))
         functions = dict(self._functions)
         metric = self._metric()
-        if self._counts_steps and metric is not None:
+        if metric is not None and _TOTAL_TIME not in functions and _reads(metric.expression, _TOTAL_TIME):
             functions[_TOTAL_TIME] = ()
-            values[_TOTAL_TIME,] = syntax.Fraction(0)
-            step = syntax.SetFluent("increase", syntax.Fluent(_TOTAL_TIME, ()), syntax.Fraction(1))
+            values[_TOTAL_TIME,] = Fraction(0)
+            step = syntax.SetFluent("increase", syntax.Fluent(_TOTAL_TIME, ()), Fraction(1))
             actions = [_with_effect(action, step) for action in actions]
         if functions.get(_TOTAL_COST) == ():
-            values.setdefault((_TOTAL_COST,), syntax.Fraction(0))
+            values.setdefault((_TOTAL_COST,), Fraction(0))
         return syntax.Description(
             domain_name=label_name(self._domain.name),
             problem_name=label_name(self._problem.name),
@@ -163,10 +163,10 @@ class _Description:
             effects=self._in_domain.effects(tree.effect, scope),
         )
 
-    def _initial_state(self) -> tuple[frozenset[syntax.Fact], dict[syntax.Fact, syntax.Fraction]]:
+    def _initial_state(self) -> tuple[frozenset[syntax.Fact], dict[syntax.Fact, Fraction]]:
         resolver, source = self._in_problem, self._problem_source
         facts: dict[syntax.Fact, bool] = {}
-        values: dict[syntax.Fact, syntax.Fraction] = {}
+        values: dict[syntax.Fact, Fraction] = {}
         for tree in sorted(self._problem.init, key=_first_index):
             if isinstance(tree, NumbersEqual):
                 head, number = tree.operands
@@ -197,6 +197,12 @@ class _Description:
 
 def _with_effect(action: syntax.ActionSchema, effect: syntax.Effect) -> syntax.ActionSchema:
     return syntax.ActionSchema(action.name, action.parameters, action.precondition, (*action.effects, effect))
+
+
+def _reads(expression: syntax.Expression, name: str) -> bool:
+    if isinstance(expression, syntax.Fluent):
+        return expression.name == name
+    return isinstance(expression, syntax.Arithmetic) and any(_reads(each, name) for each in expression.operands)
 
 
 def _first_index(tree: Any) -> int:

@@ -68,7 +68,8 @@ def best_first(
         before = model.rest(state)
         for operator, successor, step in model.successors(state):
             after = model.rest(successor)
-            assert before is not None and after is not None
+            assert before is not None
+            assert after is not None
             reached = cost + step + after - before
             known = costs.get(successor)
             if known is not None and known <= reached:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from mala_drake.errors import BadInput
+from mala_drake.planning.dominance import ResourceFinder
 from mala_drake.planning.ground import Grounder, GroundTask
 from mala_drake.planning.interpreter import Interpreter
 from mala_drake.planning.limits import Budget
@@ -33,6 +34,7 @@ class Grounding:
         self.operators: OperatorTask = compile_task(task, split)
         self.table = NumberTable(self.operators)
         self.graph = FactGraph(self.operators)
+        self.resources = ResourceFinder(self.operators)
 
 
 class PlanningTask:
