@@ -87,12 +87,13 @@ class PreferenceLearner(LeafSystem):
             raise BadInput("episode", str(episode), f"a number >= {self._first_episode}")
         context.SetDiscreteState(np.append(state, float(episode - self._first_episode)))
 
-    def _seen(self, context: Context) -> int:
+    def seen(self, context: Context) -> int:
+        """Sequence number of the last ratings taken in, 0 before the first."""
         return int(context.get_discrete_state_vector().value()[-1])
 
     def _calc_preferences(self, context: Context, output: Value) -> None:
         state = self.learner_state(context)
-        generator = keyed_generator(self._seed, self._first_episode + self._seen(context), _NAME)
+        generator = keyed_generator(self._seed, self._first_episode + self.seen(context), _NAME)
         deviation = self._learner.deviation(state)
         output.set_value(
             Preferences(
@@ -106,7 +107,7 @@ class PreferenceLearner(LeafSystem):
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         ratings = self._ratings.Eval(context)
         state = self.learner_state(context)
-        if ratings.sequence > self._seen(context):
+        if ratings.sequence > self.seen(context):
             state = self._learner.update(state, ratings=ratings.values, features=ratings.features)
-        seen = max(ratings.sequence, self._seen(context))
+        seen = max(ratings.sequence, self.seen(context))
         discrete_state.set_value(np.append(state, float(seen)))

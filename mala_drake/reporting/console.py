@@ -57,7 +57,7 @@ class RunConsole:
             f"[dim]({record.timing['wall_s']:.1f} s of computing)[/]"
         )
 
-    def show(self, summary: dict[str, Any], records: Sequence[EpisodeRecord] = ()) -> None:
+    def show(self, summary: dict[str, Any]) -> None:
         """Prints the summary of a run."""
         self._progress.stop()
         totals, timing = summary["totals"], summary["timing"]

@@ -35,11 +35,11 @@ def solver():
 
 
 CHANGES = {
-    "terminal": dict(goal=5.0),
-    "stage": dict(name="approach_left_to_bed", carrying=True),
-    "dynamics": dict(carrying=True),
-    "constraints": dict(zones=(CROWD,)),
-    "inputs": dict(carrying=True),
+    "terminal": {"goal": 5.0},
+    "stage": {"name": "approach_left_to_bed", "carrying": True},
+    "dynamics": {"carrying": True},
+    "constraints": {"zones": (CROWD,)},
+    "inputs": {"carrying": True},
 }
 
 

@@ -1,0 +1,121 @@
+"""Looks at the ports of a running station once a tick and keeps what an episode's record needs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydrake.systems.framework import Context, Diagram
+
+from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, milliseconds, plan_variant
+from mala_drake.learning.convergence import preference_distance
+from mala_drake.messages import Action, ActionKind, ActionReport, EpisodeReport, Outcome, Preferences, Ratings
+from mala_drake.scenario import Scenario
+
+
+class EpisodeWatch:
+    """Follows one episode. It only reads ports: watching does not change what happens."""
+
+    def __init__(self, station: Diagram, context: Context, scenario: Scenario, episode: int) -> None:
+        """Begins to watch the episode (counted from 0) that `context` is set up for."""
+        self._station = station
+        self._context = context
+        self._scenario = scenario
+        self._episode = episode
+        self._started = context.get_time()
+        self._controller: Any = station.GetSubsystemByName("mpc_controller")
+        self._planner: Any = station.GetSubsystemByName("task_planner")
+        self._solves = len(self._controller.solve_seconds)
+        self._plans = len(self._planner.solve_seconds)
+        self._action = Action()
+        self._actions: list[str] = []
+        self._legs: list[ActionReport] = []
+        self._before: Preferences = self._read("preference_learner", "preferences")
+        self._charge_before = self._charge()
+
+    def _read(self, system: str, port: str) -> Any:
+        subsystem = self._station.GetSubsystemByName(system)
+        return subsystem.GetOutputPort(port).Eval(subsystem.GetMyContextFromRoot(self._context))
+
+    def _charge(self) -> float:
+        return float(self._read("battery", "charge")[0])
+
+    @property
+    def finished(self) -> bool:
+        """Whether the episode has been executed, rated and learned from."""
+        ratings: Ratings = self._read("patient", "ratings")
+        if ratings.sequence < self._episode + 1:
+            return False
+        learner: Any = self._station.GetSubsystemByName("preference_learner")
+        return learner.seen(learner.GetMyContextFromRoot(self._context)) >= self._episode + 1
+
+    def look(self) -> list[str]:
+        """Takes in what has happened since the last look; returns what is new, for people."""
+        news = []
+        action: Action = self._read("task_planner", "action")
+        if action.sequence > self._action.sequence:
+            self._action = action
+            self._actions.append(action.text)
+            news.append(describe(action))
+        report: ActionReport = self._read("mpc_controller", "leg_report")
+        seen = self._legs[-1].sequence if self._legs else 0
+        if report.finished and report.sequence > seen:
+            self._legs.append(report)
+            if report.outcome is not Outcome.SUCCESS:
+                news.append(f"the leg ended: {report.outcome.value} ({report.detail})")
+        return news
+
+    def record(self, *, wall_seconds: float) -> EpisodeRecord:
+        """The record of the episode, failed for lack of time when it has not finished."""
+        report: EpisodeReport = self._read("feature_meter", "episode_report")
+        ratings: Ratings = self._read("patient", "ratings")
+        after: Preferences = self._read("preference_learner", "preferences")
+        safety = self._read("safety_monitor", "safety")
+        done = report.sequence == self._episode + 1
+        if not done:
+            report = EpisodeReport(failure="the time of the episode was up")
+        success = done and report.success
+        return EpisodeRecord(
+            episode=self._episode,
+            task=report.task or self._scenario.task,
+            profile=self._scenario.profile_name,
+            seed=self._scenario.random_seed,
+            success=success,
+            failure=None if success else (report.failure or "unknown"),
+            actions=self._actions,
+            plan_variant=plan_variant(self._actions),
+            plan_cost=report.plan_cost,
+            replans=report.replans,
+            features=by_criterion(report.features),
+            predicted_features=by_criterion(report.predicted_features),
+            ratings=list(ratings.values) if done else [None] * 5,
+            weights_before=list(self._before.estimate),
+            weights_after=list(after.estimate),
+            weights_std=None if after.deviation is None else list(after.deviation),
+            distance_to_true=preference_distance(after.estimate, self._scenario.true_weights),
+            sim_time_s=self._context.get_time() - self._started,
+            solver=self._scenario.control.solver,
+            mpc_solves=sum(leg.solves for leg in self._legs),
+            mpc_failures=sum(leg.failures for leg in self._legs),
+            min_clearance_m=float(safety[0]),
+            collisions=int(safety[1]),
+            terminal_errors_m=[leg.position_error for leg in self._legs],
+            terminal_yaw_errors_rad=[leg.yaw_error for leg in self._legs],
+            terminal_speeds_m_s=[leg.terminal_speed for leg in self._legs],
+            leg_outcomes=[leg.outcome.value for leg in self._legs],
+            mismatches=report.mismatches,
+            battery_start=self._charge_before,
+            battery_end=self._charge(),
+            timing={
+                "wall_s": wall_seconds,
+                **milliseconds("mpc", self._controller.solve_seconds[self._solves :]),
+                **milliseconds("plan", self._planner.solve_seconds[self._plans :]),
+            },
+        )
+
+
+def describe(action: Action) -> str:
+    """An action in words."""
+    words = action.name.replace("_", " ")
+    if action.kind is ActionKind.MOVE or not action.place:
+        return words
+    return f"{words} at {action.place.replace('_', ' ')}"

@@ -1,0 +1,324 @@
+"""The care station: every layer as a system, wired around the robot's physics. Reads like the figure in the README."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydrake.geometry import Box, Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder
+from pydrake.systems.primitives import Adder, Demultiplexer
+
+from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.mpc_controller import MpcController
+from mala_drake.errors import BadInput
+from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
+from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray
+from mala_drake.learning.fixed_weights import FixedWeights
+from mala_drake.learning.preference_learner import PreferenceLearner
+from mala_drake.learning.projected_gradient import ProjectedGradient
+from mala_drake.patient.patient import Patient
+from mala_drake.planning.task_planner import TaskPlanner
+from mala_drake.preferences import UNIFORM_WEIGHTS
+from mala_drake.robot.arm import Arm
+from mala_drake.robot.battery import Battery
+from mala_drake.robot.drivetrain import Drivetrain
+from mala_drake.robot.feature_meter import FeatureMeter
+from mala_drake.robot.gyroscopic_effect import GyroscopicEffect
+from mala_drake.robot.in_place_executor import InPlaceExecutor
+from mala_drake.robot.item_positions import ItemPositions
+from mala_drake.robot.items import AddItems, ItemBodies
+from mala_drake.robot.magnet import Magnet
+from mala_drake.robot.obstacle_sensor import ObstacleSensor
+from mala_drake.robot.plant import AddCareRobot, CareRobot, MakeCarePlant, X_WB_at
+from mala_drake.robot.safety_monitor import SafetyMonitor
+from mala_drake.robot.state_estimator import StateEstimator
+from mala_drake.robot.ward_plant import AddWard
+from mala_drake.robot.world import World
+from mala_drake.scenario import ObstacleConfig, Scenario, Validate
+from mala_drake.scheduling.scheduler import Scheduler
+from mala_drake.scheduling.sequence import task_names
+from mala_drake.ward.congestion import Congestion
+from mala_drake.ward.items import all_items
+from mala_drake.ward.legs import leg_planner
+from mala_drake.ward.ward_map import Ward
+
+_TROLLEY_COLOR = (0.85, 0.35, 0.20, 1.0)
+_FRAME_RATE = 20.0  # Pictures per second in Meshcat.
+
+
+def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None) -> Diagram:
+    """The whole stack for one scenario, as a Drake diagram like any other.
+
+    A default context starts at the first episode, with the robot at home. The subsystems have the names of their
+    classes in snake_case, the plant is `plant`.
+
+    Args:
+        scenario: what to simulate; validated here.
+        meshcat: shows it, if given.
+
+    Raises:
+        BadInput: naming the field of the scenario, or the place in a model, that is wrong.
+    """
+    Validate(scenario)
+    ward = scenario.load_ward()
+    station = _StationBuilder(scenario, ward)
+    station.add_physics()
+    station.add_low_level()
+    station.add_layers()
+    station.add_learning()
+    station.connect()
+    if meshcat is not None:
+        station.add_visualizer(meshcat)
+    return station.build()
+
+
+def StartEpisode(
+    station: Diagram, context: Context, *, episode: int, time: float = 0.0, learner_state: FloatArray | None = None
+) -> None:
+    """Sets a fresh default context up for an episode of the station's run.
+
+    Args:
+        station: from `MakeCareStation`.
+        context: from `station.CreateDefaultContext()`.
+        episode: its number, from 0.
+        time: seconds on the simulation's clock at which it begins, a whole number of ticks.
+        learner_state: what the preference learner has learned before, from `learner_state_of`; None at the beginning.
+    """
+    context.SetTime(time)
+
+    def own(name: str) -> tuple[Any, Context]:
+        system = station.GetSubsystemByName(name)
+        return system, system.GetMyMutableContextFromRoot(context)
+
+    scheduler, its_context = own("scheduler")
+    scheduler.start_at(its_context, episode=episode)
+    estimator, its_context = own("state_estimator")
+    estimator.SetEpisode(its_context, episode)
+    learner, its_context = own("preference_learner")
+    state = learner.learner_state(its_context) if learner_state is None else learner_state
+    learner.set_learner_state(its_context, state, episode=episode)
+
+
+def learner_state_of(station: Diagram, context: Context) -> FloatArray:
+    """What the preference learner has learned so far in `context`: numbers, to carry to the next episode."""
+    learner: Any = station.GetSubsystemByName("preference_learner")
+    state: FloatArray = learner.learner_state(learner.GetMyContextFromRoot(context))
+    return state
+
+
+class _StationBuilder:
+    """Adds the systems layer by layer, from the floor up, then wires them."""
+
+    def __init__(self, scenario: Scenario, ward: Ward) -> None:
+        self._scenario = scenario
+        self._ward = ward
+        self._congestion = Congestion(ward)
+        self._builder = DiagramBuilder()
+        self._plant: MultibodyPlant
+        self._robot: CareRobot
+        self._items: ItemBodies
+
+    def _add(self, name: str, system: Any) -> Any:
+        return self._builder.AddNamedSystem(name, system)
+
+    def add_physics(self) -> None:
+        """Ward, robot, boxes and what stands about, in one discrete plant with contact."""
+        self._plant, self._scene_graph = MakeCarePlant(self._builder)
+        AddWard(self._plant, self._ward)
+        self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
+        self._items = AddItems(self._plant, self._scene_graph, all_items(self._ward), self._robot)
+        for config in self._scenario.world.obstacles:
+            _add_obstacle(self._plant, config)
+        home = next(place for place in self._ward.places if place.category == "home")
+        self._plant.SetDefaultFloatingBaseBodyPose(self._robot.base, X_WB_at(home.x, home.y, home.yaw))
+        self._plant.Finalize()
+
+    def add_low_level(self) -> None:
+        """What belongs to the robot's body: drivetrain, arm, magnet, battery, sensors; and what it does not know."""
+        config = self._scenario.robot
+        noise = (config.position_noise,) * 2 + (config.yaw_noise,) + (config.velocity_noise,) * 3
+        seed = self._scenario.random_seed
+        self._drivetrain = self._add("drivetrain", Drivetrain())
+        self._arm = self._add("arm", Arm())
+        self._magnet = self._add("magnet", Magnet(self._plant, self._robot, self._items))
+        self._gyroscopic_effect = self._add(
+            "gyroscopic_effect", GyroscopicEffect(self._plant, self._robot, scale=config.gyroscopic_effect)
+        )
+        self._forces = self._add("forces", Adder(2, self._plant.num_velocities()))
+        self._battery = self._add("battery", Battery(initial_charge=config.initial_charge))
+        self._charge_rates = self._add("charge_rates", Demultiplexer(2))
+        self._state_estimator = self._add("state_estimator", StateEstimator(noise=noise, seed=seed))
+        self._item_positions = self._add("item_positions", ItemPositions(self._plant, self._items))
+        unmapped = self._scenario.unmapped_shapes
+        self._obstacle_sensor = self._add(
+            "obstacle_sensor", ObstacleSensor(mapped=self._ward.shapes, unmapped=unmapped)
+        )
+        self._safety_monitor = self._add(
+            "safety_monitor",
+            SafetyMonitor(
+                self._robot,
+                (*self._ward.shapes, *unmapped),
+                ignored=[body.index() for body in self._items.bodies],
+            ),
+        )
+
+    def add_layers(self) -> None:
+        """Scheduler, planner, grounding, control, and the world that answers."""
+        scenario, ward = self._scenario, self._ward
+        places = {place.name: (place.x, place.y, place.yaw) for place in ward.places}
+        names = task_names(scenario.task, episodes=scenario.episodes)
+        self._scheduler = self._add("scheduler", Scheduler(tasks=names))
+        self._task_planner = self._add(
+            "task_planner",
+            TaskPlanner(
+                ward,
+                max_actions=scenario.planner.max_actions,
+                max_expansions=scenario.planner.max_expansions,
+            ),
+        )
+        self._grounding = self._add(
+            "fuzzy_grounding",
+            FuzzyGrounding(locations={name: (x, y) for name, (x, y, _) in places.items()}),
+        )
+        rules = LegRules(
+            step_budget=scenario.control.step_budget,
+            waypoint_iterations=scenario.control.waypoint_iterations,
+            tolerated_failures=scenario.control.tolerated_failures,
+        )
+        problem = OptimalControlProblem(horizon=scenario.control.horizon)
+        self._controller = self._add(
+            "mpc_controller",
+            MpcController(
+                targets=places,
+                guide=LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules),
+                congestion=self._congestion,
+                problem=problem,
+                solver=MakeSolver(scenario.control.solver, problem),
+            ),
+        )
+        self._executor = self._add("in_place_executor", InPlaceExecutor(ward))
+        self._world = self._add(
+            "world",
+            World(
+                ward,
+                wrong_item_probability=scenario.world.wrong_item_probability,
+                wrong_items=scenario.world.wrong_items,
+                seed=scenario.random_seed,
+            ),
+        )
+        self._feature_meter = self._add("feature_meter", FeatureMeter(ward))
+
+    def add_learning(self) -> None:
+        """The patient, and who learns from the ratings."""
+        scenario = self._scenario
+        self._patient = self._add(
+            "patient",
+            Patient(
+                profile_weights=scenario.true_weights,
+                noise=scenario.patient.noise,
+                clip=scenario.patient.clip,
+                missing=scenario.patient.missing,
+                seed=scenario.random_seed,
+            ),
+        )
+        self._learner = self._add(
+            "preference_learner",
+            PreferenceLearner(learner=_make_learner(scenario), seed=scenario.random_seed),
+        )
+
+    def connect(self) -> None:
+        """Wires everything, source by source."""
+        plant, robot = self._plant, self._robot
+        base_state = plant.get_state_output_port(robot.robot)
+        arm_state = plant.get_state_output_port(robot.arm)
+        # What each layer tells the others.
+        self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter)
+        self._wire(
+            self._task_planner,
+            "action",
+            self._controller,
+            self._executor,
+            self._world,
+            self._grounding,
+            self._feature_meter,
+        )
+        self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter)
+        self._wire(self._controller, "leg_report", self._task_planner)
+        self._wire(self._controller, "control", self._drivetrain)
+        self._wire(self._executor, "in_place_report", self._task_planner, self._world)
+        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller)
+        self._wire(self._executor, "arm_target", self._arm)
+        self._wire(self._world, "world_facts", self._grounding)
+        self._wire(self._world, "handed_item", self._executor)
+        self._wire(self._world, "clamped", self._magnet)
+        self._wire(self._grounding, "symbolic_state", self._task_planner)
+        self._wire(self._obstacle_sensor, "obstacles", self._controller)
+        self._wire(self._feature_meter, "episode_report", self._patient)
+        self._wire(self._patient, "ratings", self._learner)
+        self._wire(self._learner, "preferences", self._task_planner, self._controller)
+        # What everybody senses.
+        for name, port in (("plant_state", base_state), ("arm_state", arm_state)):
+            self._fan_out(name, port)
+        self._fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
+        self._fan_out("charge", self._battery.GetOutputPort("charge"))
+        self._fan_out("item_positions", self._item_positions.GetOutputPort("item_positions"))
+        # The robot's body.
+        connect = self._builder.Connect
+        connect(plant.get_state_output_port(), self._magnet.GetInputPort("state"))
+        connect(plant.get_state_output_port(), self._item_positions.GetInputPort("state"))
+        connect(plant.get_contact_results_output_port(), self._safety_monitor.GetInputPort("contact_results"))
+        connect(self._drivetrain.GetOutputPort("wheel_torques"), plant.get_actuation_input_port(robot.robot))
+        connect(self._arm.GetOutputPort("desired_state"), plant.get_desired_state_input_port(robot.arm))
+        connect(self._magnet.GetOutputPort("generalized_force"), self._forces.get_input_port(0))
+        connect(self._gyroscopic_effect.GetOutputPort("generalized_force"), self._forces.get_input_port(1))
+        connect(self._forces.get_output_port(), plant.get_applied_generalized_force_input_port())
+        connect(self._drivetrain.GetOutputPort("power"), self._battery.GetInputPort("power"))
+        connect(self._executor.GetOutputPort("charge_rates"), self._charge_rates.get_input_port())
+        connect(self._charge_rates.get_output_port(0), self._battery.GetInputPort("in_place_draw"))
+        connect(self._charge_rates.get_output_port(1), self._battery.GetInputPort("charging"))
+
+    def _wire(self, source: Any, name: str, *targets: Any) -> None:
+        """Connects the output port `name` to the input ports of the same name."""
+        for target in targets:
+            self._builder.Connect(source.GetOutputPort(name), target.GetInputPort(name))
+
+    def _fan_out(self, name: str, port: Any) -> None:
+        """Connects `port` to every input port called `name` that is still open."""
+        for system in self._builder.GetSystems():
+            if system.HasInputPort(name) and not self._builder.IsConnectedOrExported(system.GetInputPort(name)):
+                self._builder.Connect(port, system.GetInputPort(name))
+
+    def add_visualizer(self, meshcat: Meshcat) -> None:
+        """Shows the illustration geometry in Meshcat."""
+        parameters = MeshcatVisualizerParams(role=Role.kIllustration, publish_period=1.0 / _FRAME_RATE)
+        MeshcatVisualizer.AddToBuilder(self._builder, self._scene_graph, meshcat, parameters)
+
+    def build(self) -> Diagram:
+        """The finished diagram."""
+        diagram = self._builder.Build()
+        diagram.set_name("care_station")
+        return diagram
+
+
+def _add_obstacle(plant: MultibodyPlant, config: ObstacleConfig) -> None:
+    """Fixes an upright box to the floor."""
+    box = Box(2 * config.half_length, 2 * config.half_width, config.height)
+    X_WO = RigidTransform(RollPitchYaw(0.0, 0.0, config.yaw), [config.x, config.y, 0.5 * config.height])
+    name = f"obstacle/{config.name}"
+    plant.RegisterCollisionGeometry(plant.world_body(), X_WO, box, name, CoulombFriction(0.5, 0.5))
+    plant.RegisterVisualGeometry(plant.world_body(), X_WO, box, name, list(_TROLLEY_COLOR))
+
+
+def _make_learner(scenario: Scenario) -> AbstractPreferenceLearner:
+    config = scenario.learner
+    weights = tuple(config.initial_weights) or UNIFORM_WEIGHTS
+    if config.name == "projected_gradient":
+        return ProjectedGradient(
+            initial_weights=weights, step_size=config.learning_rate, exploration=config.exploration
+        )
+    if config.name == "fixed":
+        return FixedWeights(weights=weights)
+    raise BadInput("learner.name", repr(config.name), "projected_gradient or fixed")
