@@ -79,8 +79,11 @@ def test_established_facts_hold_beside_the_place_in_sorted_order(dut):
 
 
 def test_the_robots_place_is_never_taken_from_the_facts(dut):
-    dut.fix(world_facts=Value(WorldFacts((at("pantry"), at("pantry", "robot2")))))
-    assert dut.symbolic_state.atoms == (at("home"), at("pantry", "robot2"))
+    claims = WorldFacts((at("moon"), at("pantry"), at("pantry", "robot2")))
+    dut.fix(robot_state=[0.0, 5.0, 0, 0, 0, 0], world_facts=Value(claims))
+    assert dut.symbolic_state == SymbolicState((at("pantry", "robot2"),), "", 1.0)
+    assert dut.memberships.value(at("pantry")) == 0.0
+    assert at("moon") not in dut.memberships.atoms
 
 
 @pytest.mark.parametrize(("charge", "low"), [(0.5, False), (0.19, False), (0.17, True), (0.0, True)])
