@@ -31,7 +31,7 @@ class SaturatedRamp(AbstractMembership):
 
     def value(self, x: npt.ArrayLike) -> FloatArray:
         """The membership at x."""
-        return np.clip((self.zero - np.asarray(x, dtype=float)) / (self.zero - self.full), 0.0, 1.0)
+        return (self.zero - np.clip(np.asarray(x, dtype=float), self.full, self.zero)) / (self.zero - self.full)
 
     def derivative(self, x: npt.ArrayLike) -> FloatArray:
         """-1 / (zero - full) on the slope, 0 on both plateaus."""

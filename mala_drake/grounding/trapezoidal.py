@@ -33,21 +33,24 @@ class Trapezoidal(AbstractMembership):
     def value(self, x: npt.ArrayLike) -> FloatArray:
         """The membership at x."""
         argument = np.asarray(x, dtype=float)
-        rising, falling = self._edge_slopes()
-        mu = np.where((self.left_top <= argument) & (argument <= self.right_top), 1.0, 0.0)
-        mu = np.where((self.left < argument) & (argument < self.left_top), rising * (argument - self.left), mu)
-        mu = np.where((self.right_top < argument) & (argument < self.right), falling * (argument - self.right), mu)
+        # Clipping first keeps the quotients within [0, 1] however steep the edges are.
+        mu = np.where((self.left <= argument) & (argument <= self.right), 1.0, 0.0)
+        if self.left < self.left_top:
+            rising = (np.clip(argument, self.left, self.left_top) - self.left) / (self.left_top - self.left)
+            mu = np.minimum(mu, rising)
+        if self.right_top < self.right:
+            falling = (self.right - np.clip(argument, self.right_top, self.right)) / (self.right - self.right_top)
+            mu = np.minimum(mu, falling)
         return np.where(np.isnan(argument), np.nan, mu)
 
     def derivative(self, x: npt.ArrayLike) -> FloatArray:
         """The slope of the edge that x lies on, 0 on the top and outside."""
         argument = np.asarray(x, dtype=float)
-        rising, falling = self._edge_slopes()
-        slope = np.where((self.left <= argument) & (argument < self.left_top), rising, 0.0)
-        slope = np.where((self.right_top <= argument) & (argument < self.right), falling, slope)
+        slope = np.zeros_like(argument)
+        if self.left < self.left_top:
+            on_edge = (self.left <= argument) & (argument < self.left_top)
+            slope = np.where(on_edge, 1.0 / (self.left_top - self.left), slope)
+        if self.right_top < self.right:
+            on_edge = (self.right_top <= argument) & (argument < self.right)
+            slope = np.where(on_edge, -1.0 / (self.right - self.right_top), slope)
         return np.where(np.isnan(argument), np.nan, slope)
-
-    def _edge_slopes(self) -> tuple[float, float]:
-        """The slopes of both edges; 0 for a vertical one, which no argument lies on."""
-        rise, fall = self.left_top - self.left, self.right - self.right_top
-        return (1.0 / rise if rise > 0.0 else 0.0), (-1.0 / fall if fall > 0.0 else 0.0)

@@ -21,3 +21,8 @@ def test_vertical_edges_make_a_crisp_interval_with_its_ends():
 
 def test_one_vertical_edge_leaves_the_other_sloped():
     np.testing.assert_allclose(Trapezoidal(0.0, 0.0, 1.0, 3.0).value([-0.1, 0.0, 2.0]), [0.0, 1.0, 0.5])
+
+
+def test_the_steepest_edge_there_is_neither_overflows_nor_loses_its_ends():
+    steep = Trapezoidal(0.0, 5e-324, 1.0, 1.0 + 2.3e-16)
+    np.testing.assert_array_equal(steep.value([-1e300, 0.0, 5e-324, 1.0, 2.0]), [0.0, 0.0, 1.0, 1.0, 0.0])
