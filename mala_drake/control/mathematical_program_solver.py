@@ -15,7 +15,7 @@ from .gauss_newton import GaussNewtonModel
 from .initial_guess import initial_guesses
 from .optimal_control_problem import OptimalControlProblem
 from .parameters import InputParameters, MpcParameters
-from .shooting_program import ShootingProgram
+from .shooting_program import Run, ShootingProgram
 from .solution import Solution, Status, invalid_solution, read_only
 
 Vector = NDArray[np.float64]
@@ -30,17 +30,25 @@ class MathematicalProgramSolver(ABC):
 
     name: ClassVar[str]
 
-    def __init__(self, problem: OptimalControlProblem, *, tolerance: float = 1e-4, iteration_limit: int = 200) -> None:
+    def __init__(
+        self,
+        problem: OptimalControlProblem,
+        *,
+        tolerance: float = 1e-4,
+        iteration_limit: int = 200,
+        hard_clearance: bool = False,
+    ) -> None:
         """Builds the program; nothing is rebuilt afterwards.
 
         Args:
             problem: what to solve.
             tolerance: on first-order optimality of the preconditioned, scaled problem.
             iteration_limit: major iterations; never wall time, so that equal inputs give equal outputs.
+            hard_clearance: also constrain the clearance where that is proven feasible, see `hard_clearance.py`.
         """
         self._problem = problem
         self._tolerance = tolerance
-        self._program = ShootingProgram(problem)
+        self._program = ShootingProgram(problem, hard_clearance=hard_clearance)
         self._gauss_newton = GaussNewtonModel(problem)
         self._trajectory = BufferedFunction(problem.trajectory)
         self._solver = self._make_solver()
@@ -73,15 +81,20 @@ class MathematicalProgramSolver(ABC):
         self._trajectory.arguments[1][:, 0], self._trajectory.arguments[2][:, 0] = state, packed
 
         origin = self._best_guess(state, parameters, warm_start)
-        hessian = self._gauss_newton.hessian(
-            self._simulate(origin)[0], origin, packed, parameters.stage.control_weights
-        )
+        states, margins, *_ = self._simulate(origin)
+        hessian = self._gauss_newton.hessian(states, origin, packed, parameters.stage.control_weights)
         # The largest weight sets the size of the cost: measured in it, one tolerance fits every action.
         scale = 1.0 / max(parameters.terminal.weights.max(), parameters.stage.state_weights.max(), 1.0)
-        result, controls, duals = self._program.run(
-            self._solver, self._options, origin=origin, hessian=hessian, scale=scale, inputs=parameters.inputs
+        run = self._program.run(
+            self._solver,
+            self._options,
+            origin=origin,
+            hessian=hessian,
+            scale=scale,
+            inputs=parameters.inputs,
+            margins=margins,
         )
-        return self._report(result, controls, duals, np.diag(hessian) / scale, parameters.inputs)
+        return self._report(run, np.diag(hessian) / scale, parameters.inputs)
 
     def _best_guess(self, state: Vector, parameters: MpcParameters, warm_start: ArrayLike | None) -> Vector:
         """The guess of lowest cost: a warm start that went bad must not decide which local optimum is found."""
@@ -95,14 +108,8 @@ class MathematicalProgramSolver(ABC):
         self._trajectory()
         return [np.array(result.T, order="C") for result in self._trajectory.results]
 
-    def _report(
-        self,
-        result: MathematicalProgramResult,
-        controls: Vector,
-        duals: Vector,
-        curvature: Vector,
-        inputs: InputParameters,
-    ) -> Solution:
+    def _report(self, run: Run, curvature: Vector, inputs: InputParameters) -> Solution:
+        controls = run.controls
         broken = not np.isfinite(controls).all()
         if broken:
             controls = np.clip(np.zeros_like(controls), inputs.lower, inputs.upper)
@@ -112,15 +119,15 @@ class MathematicalProgramSolver(ABC):
         failure = self._program.failure
         if failure is not None:
             _LOGGER.warning("%s: the cost could not be evaluated: %s", self.name, failure)
-        status = Status.NUMERICAL if broken or failure is not None else self._status(result, optimality)
+        status = Status.NUMERICAL if broken or failure is not None else self._status(run.result, optimality)
         return Solution(
             status=status,
             controls=read_only(controls),
             states=read_only(states),
             cost=cost,
             iterations=self._program.evaluations,
-            control_duals=read_only(duals),
-            obstacle_duals=read_only(obstacle_duals),
+            control_duals=read_only(run.control_duals),
+            obstacle_duals=read_only(obstacle_duals + run.clearance_duals),
             limit_duals=read_only(limit_duals),
             obstacle_margins=read_only(obstacle_margins),
             optimality=optimality,

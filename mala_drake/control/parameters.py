@@ -123,8 +123,8 @@ class ConstraintParameters(_Arrays):
     reverse_limit: float = 0.5  # Largest backward speed, m/s.
     yaw_rate_limit: float = 2.0  # rad/s.
     lateral_limit: float = 2.0  # Largest |v_x omega|, m/s^2.
-    obstacle_penalty: float = 4000.0  # Cost per metre of lost clearance.
-    limit_penalty: float = 400.0  # Cost per m/s, rad/s or m/s^2 beyond a path limit, and per unit of brake in reverse.
+    obstacle_penalty: float = 1e4  # Cost per metre of lost clearance.
+    limit_penalty: float = 1e3  # Cost per m/s, rad/s or m/s^2 beyond a path limit, and per unit of brake in reverse.
 
     def __post_init__(self) -> None:
         limits = self._freeze("speed_limits", (None,))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from operator import methodcaller
 from typing import Any
 
@@ -11,6 +12,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.solvers import MathematicalProgram, MathematicalProgramResult, SolverInterface, SolverOptions
 
 from .buffered_function import BufferedFunction
+from .hard_clearance import HardClearance
 from .model import CONTROL_SIZE
 from .optimal_control_problem import OptimalControlProblem
 from .parameters import InputParameters
@@ -19,6 +21,16 @@ Vector = NDArray[np.float64]
 
 _UNUSABLE = 1e10  # A finite value that no line search accepts, for points where the cost does not exist.
 _value = methodcaller("value")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What a run of a solver gave."""
+
+    result: MathematicalProgramResult
+    controls: Vector  # Shape (N, 3), inside the input set.
+    control_duals: Vector  # Multipliers of the input set, shape (N, 3).
+    clearance_duals: Vector | float  # Multipliers of hard clearance, shape (N, M), or 0 without it.
 
 
 class ShootingProgram:
@@ -30,7 +42,7 @@ class ShootingProgram:
     value between runs.
     """
 
-    def __init__(self, problem: OptimalControlProblem) -> None:
+    def __init__(self, problem: OptimalControlProblem, *, hard_clearance: bool = False) -> None:
         self._function = BufferedFunction(problem.cost_and_gradient)
         self._point = self._function.arguments[0].reshape(-1, order="F")
         self._gradient = self._function.results[1].reshape(-1, order="F")
@@ -41,6 +53,7 @@ class ShootingProgram:
         self._variables = self._program.NewContinuousVariables(size, "w")
         self._program.AddCost(self._evaluate, self._variables)
         self._box = self._program.AddLinearConstraint(np.eye(size), np.zeros(size), np.zeros(size), self._variables)
+        self._clearance = HardClearance(problem, self._program, self._variables) if hard_clearance else None
         self.failure: Exception | None = None
         self.evaluations = 0
 
@@ -64,7 +77,8 @@ class ShootingProgram:
         hessian: Vector,
         scale: float,
         inputs: InputParameters,
-    ) -> tuple[MathematicalProgramResult, Vector, Vector]:
+        margins: Vector,
+    ) -> Run:
         """Runs `solver` from the controls `origin`, shape (N, 3).
 
         Args:
@@ -74,19 +88,24 @@ class ShootingProgram:
             hessian: a positive definite model of the cost's Hessian there, shape (3 N, 3 N).
             scale: factor on the cost, in which the solver's tolerance is measured.
             inputs: p^a.
-
-        Returns:
-            The result, the controls, shape (N, 3), and the multipliers of the input set, shape (N, 3).
+            margins: obstacle margins along `origin`, shape (N, M).
         """
         self.failure, self.evaluations, self._scale = None, 0, scale
         self._origin = origin.ravel().copy()
         self._transform = np.linalg.inv(np.linalg.cholesky(scale * hessian)).T.copy()
         lower, upper = (np.tile(bound, self._horizon) - self._origin for bound in (inputs.lower, inputs.upper))
         self._box.evaluator().UpdateCoefficients(self._transform, lower, upper)
+        if self._clearance is not None:
+            state, packed = (self._function.arguments[i][:, 0] for i in (1, 2))
+            self._clearance.update(state, packed, self._origin, self._transform, margins)
         result = solver.Solve(self._program, np.zeros(origin.size), options)
         controls = (self._origin + self._transform @ result.GetSolution(self._variables)).reshape(origin.shape)
-        duals = result.GetDualSolution(self._box).reshape(origin.shape) / scale
-        return result, np.clip(controls, inputs.lower, inputs.upper), duals
+        return Run(
+            result,
+            controls=np.clip(controls, inputs.lower, inputs.upper),
+            control_duals=result.GetDualSolution(self._box).reshape(origin.shape) / scale,
+            clearance_duals=0.0 if self._clearance is None else self._clearance.duals(result) / scale,
+        )
 
     def _evaluate(self, variables: NDArray[Any]) -> AutoDiffXd:
         """The scaled cost at Drake's AutoDiff point.

@@ -54,8 +54,8 @@ class Solution(Message):
     def shifted(self) -> Vector:
         """The warm start for the next sample, shape (N, 3): paper, eq. (Shift), (ShiftEnd).
 
-        Each control moves one stage up. The paper guesses the last one to be the one before it; that is u*_{N-2} at
-        the earlier sample's numbering when the horizon has not ended, so the last control is simply held.
+        Each control moves one stage up, and the last two of the new sequence are equal: (ShiftEnd) with its subscripts
+        read on the shifted trajectory.
         """
         return np.vstack((self.controls[1:], self.controls[-1:]))
 
