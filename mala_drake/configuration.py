@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args, get_origin
 
 import yaml
 from pydrake.common.yaml import yaml_load_typed
@@ -36,7 +37,7 @@ def load_typed(schema: type[T], path: str | Path, *, defaults: T) -> T:
         return defaults
     if not isinstance(data, dict):
         raise BadInput(path.name, f"a {type(data).__name__}", "a mapping of field names to values")
-    _check_fields(defaults, data, path.name)
+    _check_fields(schema, data, path.name)
     try:
         return yaml_load_typed(schema=schema, data=text, defaults=defaults)
     except (RuntimeError, TypeError, ValueError, AttributeError) as error:
@@ -44,25 +45,35 @@ def load_typed(schema: type[T], path: str | Path, *, defaults: T) -> T:
 
 
 def _check_fields(template: Any, data: Any, where: str) -> None:
-    """Compares the mapping `data` with a dataclass instance, so that each error names file, field and value."""
-    fields = vars(template)
+    """Compares the mapping `data` with a dataclass, so that each error names file, field and value."""
+    kinds = {item.name: item.type for item in fields(template)}
     if not isinstance(data, dict):
-        raise BadInput(where, f"{data!r}", "a mapping with keys among " + ", ".join(fields))
+        raise BadInput(where, f"{data!r}", "a mapping with keys among " + ", ".join(kinds))
     for key, value in data.items():
         at = f"{where}: {key}" if ":" not in where else f"{where}.{key}"
-        if key not in fields:
-            raise BadInput(at, "unknown key", "one of " + ", ".join(fields))
-        default = fields[key]
-        if hasattr(default, "__dataclass_fields__"):
-            _check_fields(default, value, at)
-        elif isinstance(default, bool):
-            if not isinstance(value, bool):
-                raise BadInput(at, f"{value!r}", "true or false")
-        elif isinstance(default, int) and (isinstance(value, bool) or not isinstance(value, int)):
-            raise BadInput(at, f"{value!r}", "a whole number")
-        elif isinstance(default, float) and (isinstance(value, bool) or not isinstance(value, (int, float))):
-            raise BadInput(at, f"{value!r}", "a number")
-        elif isinstance(default, str) and not isinstance(value, str):
-            raise BadInput(at, f"{value!r}", "text")
-        elif isinstance(default, list) and not isinstance(value, list):
+        if key not in kinds:
+            raise BadInput(at, "unknown key", "one of " + ", ".join(kinds))
+        _check_value(kinds[key], value, at)
+
+
+def _check_value(kind: Any, value: Any, at: str) -> None:
+    if is_dataclass(kind):
+        _check_fields(kind, value, at)
+    elif get_origin(kind) is list:
+        if not isinstance(value, list):
             raise BadInput(at, f"{value!r}", "a list")
+        for i, element in enumerate(value):
+            _check_value(get_args(kind)[0], element, f"{at}[{i}]")
+    elif kind in _EXPECTED:
+        accepted, expected = _EXPECTED[kind]
+        # A bool is an int to Python, but not to a reader of the file.
+        if not isinstance(value, accepted) or (isinstance(value, bool) and kind is not bool):
+            raise BadInput(at, f"{value!r}", expected)
+
+
+_EXPECTED: dict[Any, tuple[tuple[type, ...], str]] = {
+    bool: ((bool,), "true or false"),
+    int: ((int,), "a whole number"),
+    float: ((int, float), "a number"),
+    str: ((str,), "text"),
+}

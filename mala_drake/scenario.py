@@ -1,6 +1,7 @@
-"""What to simulate: one YAML file of plain fields, each with a default, all of it validated before anything runs."""
+"""What to simulate: one YAML file of plain fields, each with a default, all of it validated before anything runs.
 
-from __future__ import annotations
+Drake's YAML reader looks at the fields' types themselves, so annotations in this module are not postponed.
+"""
 
 import math
 from collections.abc import Sequence
