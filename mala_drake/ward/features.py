@@ -7,7 +7,9 @@ the feature meter measures them on the executed trajectory with the same rates.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,20 +25,30 @@ COMFORT_RADIUS = 3.0
 
 _STANDING_DISCOMFORT = 0.25  # Discomfort per second of a robot that stands at the bed's edge; driving adds its speed.
 
+IDEAL_HAND_OVER = (22.9, 11.4, -2.4)
+"""Where the patient would like things to be handed over: metres and yaw, at the pillow's right, face to face.
+
+No place is just there; the nearer a bedside is to it, in distance and direction, the better its approach.
+"""
+
 
 @dataclass(frozen=True)
 class FeatureScales:
-    """What counts as 1, a feature and task each: seconds, risk, charge, discomfort, approach error."""
+    """What counts as 1: seconds, risk, charge, discomfort, approach error. The defaults are those of `medication`."""
 
-    time: float = 200.0
-    safety: float = 0.30
+    time: float = 160.0
+    safety: float = 0.25
     battery: float = 1.0
-    proximity: float = 20.0
-    approach: float = 1.0
+    proximity: float = 10.0
+    approach: float = 1.25
 
     def as_array(self) -> NDArray[np.float64]:
         """The five scales in the order of `FEATURES`."""
         return np.array([self.time, self.safety, self.battery, self.proximity, self.approach])
+
+
+FEATURE_SCALES: Mapping[str, FeatureScales] = MappingProxyType({"medication": FeatureScales()})
+"""By task: such that the features of the plans worth choosing lie between 0.3 and 0.95."""
 
 
 class FeatureRates:

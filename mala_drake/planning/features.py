@@ -1,0 +1,159 @@
+"""The numbers of a care problem, predicted from the ward: what each leg and each action at a place will cost.
+
+Numbers are unscaled and rounded to few decimals; the same functions write the problem file and predict the legs of a
+robot that is found between the named places. Locations of the planning domain are the places of the map in lower case,
+as PDDL does not tell cases apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
+from pathlib import Path
+
+from mala_drake.errors import BadInput
+from mala_drake.planning.leg_costs import LegCost, LegCosts
+from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, approach_error
+from mala_drake.ward.in_place_actions import CHARGE, SECONDS, Verb
+from mala_drake.ward.items import all_items
+from mala_drake.ward.ward_map import Place, Ward
+
+IN_TRANSIT = "in_transit"
+"""The location of a robot that is at no named place."""
+
+Fact = tuple[str, ...]
+Fluents = dict[Fact, Decimal]
+
+_TARGETS: Mapping[str, tuple[str, ...]] = {"medication": ("pharmacy", "supply", "charger", "bedside")}
+_STARTS = ("home",)  # Categories of places that a robot leaves but is never sent to.
+_BEGIN = ";; BEGIN generated"
+_END = ";; END generated"
+
+
+def location_name(place: str) -> str:
+    """The planning domain's name of a place of the map."""
+    return place.lower()
+
+
+def targets(ward: Ward, task: str) -> tuple[Place, ...]:
+    """The places that a task's movements lead to, in the order of the map."""
+    return tuple(place for place in ward.places if place.category in _TARGETS[task])
+
+
+def leg_fluents(cost: LegCost, start: str, goal: str) -> Fluents:
+    """What the domain wants to know of a leg between two of its locations."""
+    return {
+        ("nav-time", start, goal): _rounded(cost.time, 2),
+        ("location-safety", start, goal): _rounded(cost.risk, 5),
+        ("nav-battery", start, goal): _rounded(cost.charge, 4),
+        ("proximity-feature", start, goal): _rounded(cost.discomfort, 3),
+    }
+
+
+def leg_data(costs: LegCosts, ward: Ward, task: str) -> tuple[tuple[Fact, ...], Fluents]:
+    """The open ways of a task, and the numbers of each."""
+    goals = targets(ward, task)
+    starts = [place for place in ward.places if place.category in _STARTS or place in goals]
+    ways: list[Fact] = []
+    fluents: Fluents = {}
+    for start in starts:
+        for goal in goals:
+            cost = None if start is goal else costs.between(start.name, goal.name)
+            if cost is not None:
+                pair = location_name(start.name), location_name(goal.name)
+                ways.append(("open-way", *pair))
+                fluents |= leg_fluents(cost, *pair)
+    ways += [("open-way", IN_TRANSIT, location_name(goal.name)) for goal in goals]
+    return tuple(ways), fluents
+
+
+def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Fluents:
+    """The numbers of single places; `legs` are those of `leg_data`.
+
+    Raises:
+        BadInput: if no charger can be reached from a place.
+    """
+    goals = targets(ward, task)
+    chargers = [location_name(place.name) for place in goals if place.category == "charger"]
+    fluents: Fluents = {}
+    for goal in goals:
+        name = location_name(goal.name)
+        needed = [
+            Decimal(0) if name == charger else legs[("nav-battery", name, charger)]
+            for charger in chargers
+            if name == charger or ("nav-battery", name, charger) in legs
+        ]
+        if not needed:
+            raise BadInput(f"ward {ward.name}", f"no way from {goal.name} to a charger", "at least one")
+        fluents[("nearest-charger-battery", name)] = min(needed)
+    for goal in goals:
+        if goal.category == "bedside":
+            name = location_name(goal.name)
+            error = approach_error((goal.x, goal.y, goal.yaw), IDEAL_HAND_OVER)
+            fluents[("approach-feature", name)] = _rounded(error, 4)
+            fluents[("standing-proximity", name)] = _rounded(costs.standing_discomfort(goal.name, 1.0), 4)
+    return fluents
+
+
+def table_fluents(task: str) -> Fluents:
+    """What actions at a place take, and what counts as 1 in each feature."""
+    fluents: Fluents = {}
+    for verb in Verb:
+        name = verb.value.replace("_", "-")
+        fluents[(f"{name}-time",)] = _rounded(SECONDS[verb], 2)
+        if verb is not Verb.RECHARGE:
+            fluents[(f"{name}-battery",)] = _rounded(CHARGE[verb], 4)
+    scales = FEATURE_SCALES[task]
+    for feature in ("time", "safety", "battery", "proximity", "approach"):
+        fluents[(f"{feature}-scale",)] = _rounded(getattr(scales, feature), 3)
+    return fluents
+
+
+def fill_problem(text: str, ward: Ward, task: str, *, costs: LegCosts | None = None, name: str = "problem") -> str:
+    """The text of a problem with its generated part made anew from the ward.
+
+    Raises:
+        BadInput: if the text has no generated part.
+    """
+    before, begin, rest = text.partition(_BEGIN)
+    heading, _, rest = rest.partition("\n")
+    _, end, after = rest.partition(_END)
+    if not begin or not end:
+        raise BadInput(name, "no generated part", f"lines with {_BEGIN!r} and {_END!r}")
+    body = "".join(f"    {line}\n" for line in _generated_lines(ward, task, costs or LegCosts(ward)))
+    return f"{before}{begin}{heading}\n{body}    {end}{after}"
+
+
+def write_problem(path: Path, ward: Ward, task: str) -> bool:
+    """Makes the generated part of a problem file anew; returns whether that changed the file."""
+    before = path.read_text(encoding="utf-8")
+    after = fill_problem(before, ward, task, name=path.name)
+    if after != before:
+        path.write_text(after, encoding="utf-8")
+    return after != before
+
+
+def _generated_lines(ward: Ward, task: str, costs: LegCosts) -> Iterator[str]:
+    ways, legs = leg_data(costs, ward, task)
+    for item in all_items(ward):
+        yield _fact(("available", item.kind, location_name(item.place)))
+    for part in (table_fluents(task), place_fluents(costs, ward, task, legs)):
+        yield from (_equation(fluent, value) for fluent, value in part.items())
+    for way in ways:
+        yield _fact(way)
+        pair = way[1:]
+        yield from (_equation(fluent, value) for fluent, value in legs.items() if fluent[1:] == pair)
+
+
+def _fact(fact: Fact) -> str:
+    return f"({' '.join(fact)})"
+
+
+def _equation(fluent: Fact, value: Decimal) -> str:
+    return f"(= {_fact(fluent)} {value})"
+
+
+def _rounded(value: float, decimals: int) -> Decimal:
+    """A decimal without superfluous zeros; adding zero takes the sign from a zero."""
+    number = round(Decimal(value), decimals) + 0
+    return number.quantize(Decimal(1)) if number == number.to_integral() else number.normalize()
