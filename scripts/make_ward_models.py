@@ -12,7 +12,7 @@ def main() -> None:
     folder = models_folder() / PACKAGE_FOLDER
     folder.mkdir(exist_ok=True)
     files = ward_files(ward)
-    for stale in sorted(set(path.name for path in folder.iterdir()) - set(files)):
+    for stale in sorted({path.name for path in folder.iterdir()} - set(files)):
         (folder / stale).unlink()
     for name, write in files.items():
         (folder / name).write_text(write(), encoding="utf-8")

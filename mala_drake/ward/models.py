@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import degrees, hypot
@@ -11,9 +11,9 @@ from math import degrees, hypot
 from mala_drake.errors import BadInput
 from mala_drake.ward.furnishing import BUILDERS, ROUND_MODELS
 from mala_drake.ward.furnishing.flat import obj_text
-from mala_drake.ward.furnishing.floor import floor_parts, floor_regions
-from mala_drake.ward.furnishing.parts import Size, text_of, urdf
-from mala_drake.ward.furnishing.signs import floor_sign, sign_letters, standing_sign
+from mala_drake.ward.furnishing.floor import floor_parts, floor_regions, floor_tiles, standing_mark
+from mala_drake.ward.furnishing.parts import Part, Size, text_of, urdf
+from mala_drake.ward.furnishing.signs import floor_sign, place_mark, sign_heights, sign_letters, standing_sign
 from mala_drake.ward.furnishing.storage import LEDGE_DEPTH, LEDGE_HEIGHT
 from mala_drake.ward.ward_map import Furniture, Place, Ward
 
@@ -21,6 +21,8 @@ __all__ = ["FLOOR", "LEDGE_DEPTH", "LEDGE_HEIGHT", "PACKAGE_FOLDER", "WardModel"
 
 PACKAGE_FOLDER = "ward"
 """Folder of the ward's models inside `package://mala_drake/`."""
+
+_MAT_OFFSET = 1.2  # Metres.
 
 FLOOR = "floor"
 """Name of the floor's model."""
@@ -52,10 +54,8 @@ def _floor_stem(ward: Ward) -> str:
     return "floor_" + hashlib.sha256(regions.encode()).hexdigest()[:8]
 
 
-def _sign_position(place: Place, piece: Furniture | None) -> tuple[float, float]:
+def _sign_position(place: Place, piece: Furniture) -> tuple[float, float]:
     """Towards the far side of the furniture as seen from the place, so that the pole is out of the arm's way."""
-    if piece is None:
-        return place.x, place.y
     distance = hypot(piece.x - place.x, piece.y - place.y)
     back = 0.8 * min(piece.half_length, piece.half_width) / distance if distance > 0 else 0.0
     return piece.x + back * (piece.x - place.x), piece.y + back * (piece.y - place.y)
@@ -84,9 +84,12 @@ def ward_models(ward: Ward) -> tuple[WardModel, ...]:
         _check(piece)
     models = [WardModel(FLOOR, _floor_stem(ward) + ".urdf")]
     models += [WardModel(piece.name, _furniture_file(piece), piece.x, piece.y, piece.yaw) for piece in pieces]
+    sign_files, positions = _sign_files(ward), _standing_signs(ward)
     for place in ward.places:
-        x, y = _sign_position(place, ward.furniture_of.get(place.name))
-        models.append(WardModel(f"sign_{place.name}", _sign_file(place, place.name in ward.furniture_of), x, y))
+        # A mat lies in front of the place, seen from the south, so that a robot at the place does not cover its name.
+        x, y = positions.get(place.name, (place.x, place.y - _MAT_OFFSET))
+        models.append(WardModel(f"sign_{place.name}", sign_files[place.name][0], x, y))
+        models.append(WardModel(f"mark_{place.name}", f"mark_{place.category}.urdf", place.x, place.y, place.yaw))
     names = [model.name for model in models]
     for name in names:
         if names.count(name) > 1:
@@ -112,19 +115,17 @@ def _floor_files(ward: Ward) -> dict[str, Callable[[], str]]:
     stem = _floor_stem(ward)
     extent = ward.half_extent + ward.wall_half_thickness
     regions = floor_regions(extent, ward.zones)
-    names = [f"{stem}_{i}.obj" for i in range(len(regions))]
-    files: dict[str, Callable[[], str]] = {
-        name: partial(obj_text, region)
-        for name, (_, region) in zip(names, regions, strict=True)
-    }
-    parts = floor_parts(extent, [level for level, _ in regions], [_uri(name) for name in names])
-    files[stem + ".urdf"] = partial(urdf, FLOOR, parts)
+    names = [(f"{stem}_{i}_light.obj", f"{stem}_{i}_dark.obj") for i in range(len(regions))]
+    files: dict[str, Callable[[], str]] = {}
+    for pair, (_, region) in zip(names, regions, strict=True):
+        files |= {name: partial(obj_text, tiles) for name, tiles in zip(pair, floor_tiles(region), strict=True)}
+    uris = [(_uri(light), _uri(dark)) for light, dark in names]
+    files[stem + ".urdf"] = partial(urdf, FLOOR, floor_parts(extent, [level for level, _ in regions], uris))
     return files
 
 
-def _furniture_text(piece: Furniture) -> str:
-    size = Size(piece.half_length, piece.half_width, piece.radius, piece.height)
-    return urdf(piece.model, BUILDERS[piece.model](size))
+def _furniture_parts(piece: Furniture) -> Sequence[Part]:
+    return BUILDERS[piece.model](Size(piece.half_length, piece.half_width, piece.radius, piece.height))
 
 
 def _letters_text(place: Place) -> str:
@@ -135,13 +136,31 @@ def _letters_file(place: Place) -> str:
     return f"letters_{place.name}.obj"
 
 
-def _sign_file(place: Place, has_furniture: bool) -> str:
-    return f"{'sign' if has_furniture else 'mat'}_{place.category}_{place.name}.urdf"
+def _standing_signs(ward: Ward) -> dict[str, tuple[float, float]]:
+    """Where the signs' poles stand, by place; a place without furniture has a mat instead."""
+    places = [place for place in ward.places if place.name in ward.furniture_of]
+    return {place.name: _sign_position(place, ward.furniture_of[place.name]) for place in places}
 
 
-def _sign_text(place: Place, has_furniture: bool) -> str:
-    build = standing_sign if has_furniture else floor_sign
-    return urdf(f"sign_{place.name}", build(place.name, place.category, _uri(_letters_file(place))))
+def _sign_files(ward: Ward) -> dict[str, tuple[str, Callable[[], str]]]:
+    """The file of each place's sign and its text, by place."""
+    heights = sign_heights(_standing_signs(ward))
+    files: dict[str, tuple[str, Callable[[], str]]] = {}
+    for place in ward.places:
+        letters = _uri(_letters_file(place))
+        if place.name in heights:
+            height = heights[place.name]
+            file = f"sign_{place.category}_{place.name}_{text_of(1000 * height)}.urdf"
+            build = partial(standing_sign, place.name, place.category, letters, height)
+        else:
+            file = f"mat_{place.category}_{place.name}.urdf"
+            build = partial(floor_sign, place.name, place.category, letters)
+        files[place.name] = file, partial(_model_text, f"sign_{place.name}", build)
+    return files
+
+
+def _model_text(name: str, build: Callable[[], Sequence[Part]]) -> str:
+    return urdf(name, build())
 
 
 def ward_files(ward: Ward) -> Mapping[str, Callable[[], str]]:
@@ -150,10 +169,12 @@ def ward_files(ward: Ward) -> Mapping[str, Callable[[], str]]:
     The text is made on demand: for a ward whose files are there already nothing is made.
     """
     files = _floor_files(ward)
+    files["mark.obj"] = lambda: obj_text(standing_mark())
     for piece in (*ward.walls, *ward.furniture):
-        files[_furniture_file(piece)] = partial(_furniture_text, piece)
+        files[_furniture_file(piece)] = partial(_model_text, piece.model, partial(_furniture_parts, piece))
     for place in ward.places:
-        has_furniture = place.name in ward.furniture_of
+        mark = partial(place_mark, place.category, _uri("mark.obj"))
+        files[f"mark_{place.category}.urdf"] = partial(_model_text, f"mark_{place.category}", mark)
         files[_letters_file(place)] = partial(_letters_text, place)
-        files[_sign_file(place, has_furniture)] = partial(_sign_text, place, has_furniture)
+    files |= dict(_sign_files(ward).values())
     return files

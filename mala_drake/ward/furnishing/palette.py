@@ -35,7 +35,7 @@ GLASS = (0.72, 0.86, 0.94, 0.28)
 CURTAIN = (0.55, 0.78, 0.80, 0.85)
 
 FLOOR = (0.93, 0.93, 0.90)
-BUSY_FLOOR = (0.98, 0.72, 0.62)
+BUSY_FLOOR = (1.00, 0.50, 0.32)
 """What the floor's color tends to where the congestion level tends to 1."""
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import pi
+from collections.abc import Mapping
+from math import cos, pi, sin
 
 import shapely
 
@@ -11,9 +12,9 @@ from mala_drake.ward.furnishing.flat import lettering
 from mala_drake.ward.furnishing.parts import Part, box, cylinder, mesh
 
 _SIZE = 0.46  # Font size, metres.
-_MARGIN = 0.16  # Of the panel around the letters, metres.
+_MARGIN = 0.14  # Of the panel around the letters, metres.
 _TILT = pi / 4  # Of the panel's face from the horizon towards the sky, radians.
-_BOTTOM = 2.25  # Height of the panel's middle, metres.
+_LOWEST, _RAISE = 2.8, 0.4  # Height of the panel's middle, and by how much it is raised while it hides another; metres.
 _LINE_LENGTH = 8  # Longer texts are broken in two.
 
 
@@ -33,6 +34,30 @@ def sign_letters(name: str) -> shapely.MultiPolygon:
     return lettering(sign_lines(name), size=_SIZE)
 
 
+def sign_heights(positions: Mapping[str, tuple[float, float]]) -> dict[str, float]:
+    """How high the signs of the places stand, so that seen from the south none hides another; metres, in 0.4 m steps.
+
+    Args:
+        positions: x and y of the signs' poles, by the name of the place.
+    """
+    heights: dict[str, float] = {}
+    seen: list[shapely.Polygon] = []
+    # From south to north: a sign further back is raised until it shows above those before it.
+    for name in sorted(positions, key=lambda name: (positions[name][1], name)):
+        x, y = positions[name]
+        half_width, half_height = _panel_half_size(name)
+        height = _LOWEST
+        while True:
+            up = y * sin(_TILT) + height * cos(_TILT)
+            panel = shapely.box(x - half_width, up - half_height, x + half_width, up + half_height)
+            if not any(panel.intersects(other) for other in seen):
+                break
+            height = round(height + _RAISE, 3)
+        heights[name] = height
+        seen.append(panel)
+    return heights
+
+
 def _ink(category: str) -> palette.Color:
     red, green, blue = palette.FUNCTION_COLORS[category]
     return palette.DARK if 0.3 * red + 0.6 * green + 0.1 * blue > 0.6 else palette.WHITE
@@ -40,26 +65,32 @@ def _ink(category: str) -> palette.Color:
 
 def _panel_half_size(name: str) -> tuple[float, float]:
     lines = sign_lines(name)
-    return 0.36 * _SIZE * max(map(len, lines)) + _MARGIN, 0.6 * _SIZE * len(lines) + 0.5 * _MARGIN
+    return 0.345 * _SIZE * max(map(len, lines)) + _MARGIN, 0.6 * _SIZE * len(lines) + 0.5 * _MARGIN
 
 
-def standing_sign(name: str, category: str, letters_uri: str) -> list[Part]:
-    """A panel on a pole, facing south and tilted towards the sky."""
+def standing_sign(name: str, category: str, letters_uri: str, height: float) -> list[Part]:
+    """A panel on a pole, facing south and tilted towards the sky, its middle at `height` metres."""
     half_width, half_height = _panel_half_size(name)
     rotation = (pi / 2 - _TILT, 0.0, 0.0)
     panel = box("panel", (-half_width, half_width), (-half_height, half_height), (-0.02, 0.02), palette.FUNCTION_COLORS[category])
     # The letters lie 3 cm in front of the panel's middle, along the panel's normal (0, -cos tilt, sin tilt).
     return [
-        cylinder("pole", 0, 0, (0, _BOTTOM), 0.03, palette.GRAY),
-        Part(panel.name, panel.geometry, (0, 0, _BOTTOM), rotation, panel.color),
-        mesh("letters", letters_uri, _ink(category), position=(0, -0.0212, _BOTTOM + 0.0212), rotation=rotation),
+        cylinder("pole", 0, 0, (0, height), 0.03, palette.GRAY),
+        Part(panel.name, panel.geometry, (0, 0, height), rotation, panel.color),
+        mesh("letters", letters_uri, _ink(category), position=(0, -0.0212, height + 0.0212), rotation=rotation),
     ]
 
 
 def floor_sign(name: str, category: str, letters_uri: str) -> list[Part]:
-    """A round mat with the name, for a place that has no furniture."""
-    half_width, _ = _panel_half_size(name)
+    """A mat with the name, for a place that has no furniture."""
+    half_width, half_height = _panel_half_size(name)
+    across, along = (-half_width, half_width), (-half_height, half_height)
     return [
-        cylinder("mat", 0, 0, (0, 0.004), half_width + 0.1, palette.FUNCTION_COLORS[category]),
-        mesh("letters", letters_uri, _ink(category), position=(0, 0, 0.012)),
+        box("mat", across, along, (0, 0.008), palette.FUNCTION_COLORS[category]),
+        mesh("letters", letters_uri, _ink(category), position=(0, 0, 0.016)),
     ]
+
+
+def place_mark(category: str, mark_uri: str) -> list[Part]:
+    """What is painted on the floor where the robot stands."""
+    return [mesh("mark", mark_uri, palette.FUNCTION_COLORS[category], position=(0, 0, 0.006))]
