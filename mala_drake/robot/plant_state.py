@@ -21,7 +21,8 @@ BASE_VELOCITIES = 6
 def yaw_of(state: Sequence[float]) -> float:
     """The heading of the base in [-pi, pi], radians: the direction of its x axis seen from above."""
     qw, qx, qy, qz = state[QW], state[QX], state[QY], state[QZ]
-    return math.atan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
+    # Holds for a quaternion of any norm: the discrete plant lets it drift while the robot turns.
+    return math.atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz)
 
 
 def planar_state_of(state: Sequence[float]) -> tuple[float, float, float, float, float, float]:

@@ -1,0 +1,80 @@
+"""The battery: power in, state of charge out."""
+
+from __future__ import annotations
+
+import math
+
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
+
+from mala_drake.clock import PLANT_STEP
+from mala_drake.errors import BadInput
+from mala_drake.robot.drive_law import DriveLaw
+
+CRUISE_SPEED = 1.5
+"""m/s; the speed at which the capacity is defined."""
+
+CHARGE_PER_METRE = 0.01
+"""Charge that driving one metre at cruise speed costs."""
+
+CAPACITY = DriveLaw().cruise_power(CRUISE_SPEED) / CRUISE_SPEED / CHARGE_PER_METRE
+"""Energy of the full battery, J.
+
+At cruise the two wheels turn at 15 rad/s against 1.0 N m of rolling resistance each; with the drive's efficiency and
+heat that is 36 W, and 24 J a metre, of which the full battery holds a hundred.
+"""
+
+
+class Battery(LeafSystem):
+    """Integrates what is drawn from the battery and what is put into it.
+
+    .. pydrake_system::
+
+        name: Battery
+        input_ports:
+        - power
+        - in_place_draw
+        - charging
+        output_ports:
+        - charge
+
+    `power` is the electrical power of the drive, W. `in_place_draw` and `charging` are what an in-place action takes
+    and what a charger gives, in charge per second. `charge` is the state of charge in [0, 1]; an empty battery stays
+    empty until it is charged. A rate that is not finite counts as nothing: a broken reading must not fill a battery.
+    """
+
+    def __init__(self, *, initial_charge: float = 1.0, capacity: float = CAPACITY) -> None:
+        """Declares the battery.
+
+        Args:
+            initial_charge: in [0, 1].
+            capacity: energy of the full battery, J, positive.
+
+        Raises:
+            BadInput: either is out of its range.
+        """
+        super().__init__()
+        if not 0.0 <= initial_charge <= 1.0:
+            raise BadInput("battery initial_charge", repr(initial_charge), "a number in [0, 1]")
+        if not (capacity > 0.0 and math.isfinite(capacity)):
+            raise BadInput("battery capacity", repr(capacity), "a positive energy in J")
+        self._capacity = capacity
+        self._power = self.DeclareVectorInputPort("power", 1)
+        self._in_place_draw = self.DeclareVectorInputPort("in_place_draw", 1)
+        self._charging = self.DeclareVectorInputPort("charging", 1)
+        charge = self.DeclareDiscreteState([initial_charge])
+        self.DeclareStateOutputPort("charge", charge)
+        self.DeclarePeriodicDiscreteUpdateEvent(PLANT_STEP, 0.0, self._integrate)
+
+    def SetCharge(self, context: Context, charge: float) -> None:
+        """Sets the state of charge in `context`, this system's own, to a value in [0, 1]."""
+        if not 0.0 <= charge <= 1.0:
+            raise ValueError(f"charge={charge!r} is not in [0, 1]")
+        context.SetDiscreteState([charge])
+
+    def _integrate(self, context: Context, discrete_state: DiscreteValues) -> None:
+        rate = self._charging.Eval(context)[0] - self._in_place_draw.Eval(context)[0]
+        rate -= self._power.Eval(context)[0] / self._capacity
+        state = discrete_state.get_mutable_vector()
+        charge = state.GetAtIndex(0)
+        if math.isfinite(rate):
+            state.SetAtIndex(0, min(max(charge + PLANT_STEP * rate, 0.0), 1.0))
