@@ -10,9 +10,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mala_drake.clock import ROUNDING
+from mala_drake.clock import ROUNDING, TICK
 from mala_drake.messages import Action, ActionKind, ArmCommand, Message, Outcome
-from mala_drake.robot.arm_kinematics import Joints, Point
+from mala_drake.robot.arm_kinematics import STOWED, Joints, Point, joints_for_gripper
 from mala_drake.robot.gripper_geometry import PlanarPose, hanging_positions, landing_positions
 from mala_drake.robot.in_place_motions import MOTIONS, Aim, gripper_target, phase_index
 from mala_drake.robot.item_messages import HandedItem
@@ -30,6 +30,10 @@ CHARGER_REACH = 0.6
 FULL = 0.99
 """State of charge that counts as recharged."""
 
+ARRIVED = 0.015
+"""Radians that every joint of the arm may be off its target when the next phase of a motion begins."""
+
+_PATIENCE = 6.0  # Seconds that an action waits in all for an arm that has farther to go than usual.
 _ANSWER_TIME = 1.0  # Seconds that a dispenser has to hand something over.
 _CHARGING_TIME = 0.9  # Part of the recharging time after which the battery is full.
 
@@ -59,6 +63,7 @@ class Execution(Message):
         newest: sequence of the newest action of any kind.
         started: seconds.
         steps: ticks since.
+        delay: seconds for which the motion has waited for the arm.
         phase: of the motion, -1 before the first one.
         handled: the boxes that the action is about.
         goal: where the gripper does its work, base frame.
@@ -76,6 +81,7 @@ class Execution(Message):
     newest: int = 0
     started: float = 0.0
     steps: int = 0
+    delay: float = 0.0
     phase: int = -1
     handled: Held = ()
     goal: Point | None = None
@@ -160,12 +166,17 @@ def advance(execution: Execution, senses: Senses) -> Execution:
     work = execution.work
     if not execution.running or work is None:
         return execution
-    execution = replace(execution, steps=execution.steps + 1)
+    steps = execution.steps + 1
+    # An action costs what it costs, however long it has to wait for the arm.
+    paid = steps * TICK + ROUNDING >= work.seconds
+    execution = replace(execution, steps=steps, draw=0.0 if paid else execution.draw)
     if not _is_finite(senses):
         return _end(execution, Outcome.INVALID_STATE, "the state of the robot is not finite", senses)
     if work.verb is not Verb.RECHARGE and not senses.charge > 0.0:
         return _end(execution, Outcome.BATTERY_EMPTY, "", senses)
-    elapsed = senses.time - execution.started + ROUNDING
+    if _is_waiting_for_arm(execution, work, senses):
+        execution = replace(execution, delay=execution.delay + TICK)
+    elapsed = senses.time - execution.started - execution.delay + ROUNDING
     if elapsed >= work.seconds:
         return _judge(execution, work, senses)
     if work.verb is Verb.COLLECT and not execution.handled:
@@ -173,6 +184,20 @@ def advance(execution: Execution, senses: Senses) -> Execution:
             return execution
         execution = _take(execution, work, senses)
     return _move(execution, work, senses, elapsed / work.seconds) if execution.running else execution
+
+
+def _is_waiting_for_arm(execution: Execution, work: InPlaceAction, senses: Senses) -> bool:
+    """Whether the present phase is due to end while the arm is still on its way; the last one does not wait."""
+    phases = MOTIONS[work.verb]
+    if not 0 <= execution.phase < len(phases) - 1 or execution.delay + TICK > _PATIENCE:
+        return False
+    elapsed = senses.time - execution.started - execution.delay + ROUNDING
+    if elapsed < phases[execution.phase].until * work.seconds:
+        return False
+    target = STOWED if execution.arm.p_BG is None else joints_for_gripper(execution.arm.p_BG)
+    return target is not None and any(
+        abs(joint - wanted) > ARRIVED for joint, wanted in zip(senses.joints, target, strict=True)
+    )
 
 
 def _take(execution: Execution, work: InPlaceAction, senses: Senses) -> Execution:

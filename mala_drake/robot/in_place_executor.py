@@ -34,9 +34,10 @@ class InPlaceExecutor(LeafSystem):
         - in_place_report
         - charge_rates
 
-    Each action runs for its time (see `mala_drake.ward.in_place_actions`) through the phases of its motion (see
-    `mala_drake.robot.in_place_motions`), and has succeeded only if its physical effect is seen at the end. A newer
-    action replaces a running one. While none is running the arm is stowed, and what the magnet holds stays held.
+    Each action runs for its time (see `mala_drake.ward.in_place_actions`), or a little longer when the arm has far to
+    go, through the phases of its motion (see `mala_drake.robot.in_place_motions`), and has succeeded only if its
+    physical effect is seen at the end. A newer action replaces a running one. While none is running the arm is stowed,
+    and what the magnet holds stays held.
 
     `robot_state` is the estimate (x, y, yaw, v_x, v_y, omega_z); `item_positions` are the centres of the boxes in the
     order of `all_items`; `arm_state` are the arm's three joint angles and their rates. `charge_rates` is what the

@@ -29,7 +29,7 @@ KINDS = {
 _SHELF_AHEAD = 0.70  # Metres from the standing point along its yaw.
 # The box that hangs at the gripper's other pad is 0.14 m beside the one that is picked, and all are 0.06 m wide.
 _SHELF_ASIDE = (0.24, 0.0, -0.24)  # Metres to the left of the standing pose.
-_RETURN_ASIDE = (0.50, -0.50, 0.38, -0.38)  # The outer ones are the better ones, but not always within reach.
+_RETURN_ASIDE = (0.46, -0.46, 0.38, -0.38)  # The outer ones are the better ones, but not always within reach.
 _TABLE_AHEAD = 0.76
 _TABLE_ASIDE = (0.14, -0.14)
 
