@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TypeGuard
 
 from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, System
 
@@ -80,7 +81,7 @@ def _quoted(text: str) -> str:
     return '"' + text.replace('"', "#quot;") + '"'
 
 
-def _opened(system: System, depth: int | None) -> bool:
+def _opened(system: System, depth: int | None) -> TypeGuard[Diagram]:
     """Whether the system is a diagram whose inside is drawn when `depth` more levels may be."""
     return isinstance(system, Diagram) and depth != 0
 
@@ -170,7 +171,8 @@ def _drawn(source: str, form: str, path: Path) -> bytes:
     program = shutil.which("dot")
     if program is None:
         raise BadInput(
-            str(path), "drawing needs Graphviz' program `dot`, which is not on the PATH",
+            str(path),
+            "drawing needs Graphviz' program `dot`, which is not on the PATH",
             "Graphviz to be installed, or a file name ending in .md or .dot",
         )
     done = subprocess.run([program, f"-T{form}"], input=source.encode(), capture_output=True, check=False)

@@ -9,7 +9,6 @@ import json
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from pydrake.geometry import Meshcat
@@ -22,7 +21,9 @@ from mala_drake.ward.ward_map import Ward
 FRAME_RATE = 10.0
 """Frames a second of simulation; the player interpolates between them."""
 
-_MESSAGE = re.compile(r'fetch\("data:application/octet-binary;base64,([A-Za-z0-9+/=]+)"\)\s*\.then\(res => res\.arrayBuffer\(\)\)')
+_MESSAGE = re.compile(
+    r'fetch\("data:application/octet-binary;base64,([A-Za-z0-9+/=]+)"\)\s*\.then\(res => res\.arrayBuffer\(\)\)'
+)
 _COMPRESSED_FROM = 20_000  # Characters: smaller messages are left as they are.
 
 
@@ -129,9 +130,11 @@ def _compressed(page: str) -> str:
 
 
 def _with_overlay(page: str, title: str, data: object) -> str:
-    overlay = files("mala_drake.reporting").joinpath("recording_overlay.html").read_text(encoding="utf-8")
+    overlay = Path(__file__).with_name("recording_overlay.html").read_text(encoding="utf-8")
     # "</" inside a script element could end it.
     embedded = json.dumps(data, ensure_ascii=False).replace("</", "<\\/")
     head, body, tail = page.rpartition("</body>")
     page = f'{head}<script type="application/json" id="recording">{embedded}</script>\n{overlay}{body}{tail}'
-    return re.sub(r"<title>.*?</title>", lambda _: f"<title>{html.escape(title)}</title>", page, count=1, flags=re.DOTALL)
+    return re.sub(
+        r"<title>.*?</title>", lambda _: f"<title>{html.escape(title)}</title>", page, count=1, flags=re.DOTALL
+    )

@@ -68,7 +68,7 @@ def SetScenery(meshcat: Meshcat, view: View) -> None:
     meshcat.SetProperty("/Lights/FillLight/<object>", "intensity", 2.25)
     meshcat.SetProperty("/Lights/FillLight/<object>", "position", [-12.0, -20.0, 30.0])
     meshcat.SetCamera(Meshcat.PerspectiveCamera(fov=degrees(_FIELD_OF_VIEW), near=_NEAREST, far=_FARTHEST))
-    meshcat.SetCameraPose(np.array(view.camera), np.array(view.target))
+    meshcat.SetCameraPose(np.array(view.camera, dtype=np.float64), np.array(view.target, dtype=np.float64))
 
 
 def AddPictureRenderer(scene_graph: SceneGraph) -> None:

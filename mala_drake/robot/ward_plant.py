@@ -37,16 +37,18 @@ class WardGeometry:
     solids: Mapping[str, tuple[GeometryId, ...]]  # By the name of the furniture or wall.
 
 
-def AddWard(plant: MultibodyPlant, ward: Ward | None = None) -> WardGeometry:
+def AddWard(plant: MultibodyPlant, ward: Ward | None = None, *, visible: bool = True) -> WardGeometry:
     """Adds floor, walls, furniture and signs of a ward to a plant, fixed to its world body.
 
     The ward's model directives are processed in a plant of their own, whose geometries are then registered with the
-    world body of `plant`: sixty welded bodies would nearly double the time of a step, anchored geometries cost nothing.
+    world body of `plant`: seventy welded bodies would nearly double the time of a step and give the plant hundreds of
+    ports, anchored geometries do neither.
     Models that are not among the package's files (another map, other sizes) are generated.
 
     Args:
         plant: not finalized, registered with a SceneGraph.
         ward: None is the hospital ward that comes with the package.
+        visible: whether the ward is also to be seen; a plant that nobody looks at is built in half the time without.
 
     Raises:
         BadInput: when the map names a model that does not exist or cannot have the size.
@@ -57,11 +59,11 @@ def AddWard(plant: MultibodyPlant, ward: Ward | None = None) -> WardGeometry:
     furnished.RegisterAsSourceForSceneGraph(scene_graph)
     with _folder_with_models(ward) as folder:
         parser = Parser(furnished)
-        parser.package_map().Add("mala_drake", str(folder))
+        parser.package_map().Add("mala_drake", folder)
         ProcessModelDirectives(LoadModelDirectivesFromString(ward_directives(ward)), parser)
         furnished.Finalize()
         names = [model.name for model in ward_models(ward)]
-        return _copy(names, furnished, scene_graph.model_inspector(), plant)
+        return _copy(names, furnished, scene_graph.model_inspector(), plant, visible)
 
 
 @contextmanager
@@ -84,7 +86,11 @@ def _folder_with_models(ward: Ward) -> Iterator[Path]:
 
 
 def _copy(
-    names: Iterable[str], furnished: MultibodyPlant, inspector: SceneGraphInspector, plant: MultibodyPlant
+    names: Iterable[str],
+    furnished: MultibodyPlant,
+    inspector: SceneGraphInspector,
+    plant: MultibodyPlant,
+    visible: bool,
 ) -> WardGeometry:
     context = furnished.CreateDefaultContext()
     solids: dict[str, tuple[GeometryId, ...]] = {}
@@ -92,7 +98,7 @@ def _copy(
         body = furnished.GetBodyByName("base", furnished.GetModelInstanceByName(name))
         frame = furnished.GetBodyFrameIdOrThrow(body.index())
         X_WB = furnished.EvalBodyPoseInWorld(context, body)
-        for visual in inspector.GetGeometries(frame, Role.kIllustration):
+        for visual in inspector.GetGeometries(frame, Role.kIllustration) if visible else ():
             plant.RegisterVisualGeometry(plant.world_body(), _visual(inspector, visual, name, X_WB))
         solids[name] = tuple(
             plant.RegisterCollisionGeometry(

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 from math import degrees, hypot
 
+from shapely.geometry.base import BaseGeometry
+
 from mala_drake.errors import BadInput
 from mala_drake.ward.furnishing import BUILDERS, ROUND_MODELS
 from mala_drake.ward.furnishing.flat import obj_text
@@ -17,7 +19,16 @@ from mala_drake.ward.furnishing.signs import floor_sign, place_mark, sign_height
 from mala_drake.ward.furnishing.storage import LEDGE_DEPTH, LEDGE_HEIGHT
 from mala_drake.ward.ward_map import Furniture, Place, Ward
 
-__all__ = ["FLOOR", "LEDGE_DEPTH", "LEDGE_HEIGHT", "PACKAGE_FOLDER", "WardModel", "ward_directives", "ward_files", "ward_models"]
+__all__ = [
+    "FLOOR",
+    "LEDGE_DEPTH",
+    "LEDGE_HEIGHT",
+    "PACKAGE_FOLDER",
+    "WardModel",
+    "ward_directives",
+    "ward_files",
+    "ward_models",
+]
 
 PACKAGE_FOLDER = "ward"
 """Folder of the ward's models inside `package://mala_drake/`."""
@@ -111,16 +122,22 @@ def ward_directives(ward: Ward) -> str:
     return "".join(blocks)
 
 
+def _tiles_text(region: BaseGeometry, dark: bool) -> str:
+    return obj_text(floor_tiles(region)[dark])
+
+
 def _floor_files(ward: Ward) -> dict[str, Callable[[], str]]:
     stem = _floor_stem(ward)
     extent = ward.half_extent + ward.wall_half_thickness
     regions = floor_regions(extent, ward.zones)
-    names = [(f"{stem}_{i}_light.obj", f"{stem}_{i}_dark.obj") for i in range(len(regions))]
     files: dict[str, Callable[[], str]] = {}
-    for pair, (_, region) in zip(names, regions, strict=True):
-        files |= {name: partial(obj_text, tiles) for name, tiles in zip(pair, floor_tiles(region), strict=True)}
-    uris = [(_uri(light), _uri(dark)) for light, dark in names]
-    files[stem + ".urdf"] = partial(urdf, FLOOR, floor_parts(extent, [level for level, _ in regions], uris))
+    names = []
+    for i, (_, region) in enumerate(regions):
+        light, dark = f"{stem}_{i}_light.obj", f"{stem}_{i}_dark.obj"
+        files[light], files[dark] = partial(_tiles_text, region, False), partial(_tiles_text, region, True)
+        names.append((_uri(light), _uri(dark)))
+    parts = partial(floor_parts, extent, [level for level, _ in regions], names)
+    files[stem + ".urdf"] = partial(_model_text, FLOOR, parts)
     return files
 
 

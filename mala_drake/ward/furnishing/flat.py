@@ -37,5 +37,7 @@ def lettering(lines: tuple[str, ...], *, size: float) -> shapely.MultiPolygon:
             text = shapely.symmetric_difference(text, shapely.Polygon(loop).buffer(0))
         left, _, right, _ = text.bounds
         down = 1.2 * size * (row - (len(lines) - 1) / 2) + 0.36 * size
-        region = shapely.union(region, shapely.transform(text, lambda points, x=(left + right) / 2, y=down: points - (x, y)))
+        region = shapely.union(
+            region, shapely.transform(text, lambda points, x=(left + right) / 2, y=down: points - (x, y))
+        )
     return shapely.MultiPolygon(shapely.get_parts(region.simplify(_SMOOTHNESS * size)).tolist())

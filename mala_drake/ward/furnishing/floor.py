@@ -17,7 +17,7 @@ _DARKER = 0.975  # Brightness of dark tiles relative to light ones.
 
 
 def floor_regions(half_extent: float, zones: Sequence[Zone]) -> list[tuple[float, BaseGeometry]]:
-    """Level and region, a partition of the floor: where zones overlap, the highest level counts; level 0 is the rest."""
+    """Level and region: a partition of the floor. Where zones overlap the highest level counts; level 0 is the rest."""
     rest: BaseGeometry = shapely.box(-half_extent, -half_extent, half_extent, half_extent)
     regions = []
     for level in sorted({zone.level for zone in zones}, reverse=True):

@@ -23,7 +23,14 @@ def _glazed(size: Size, *, sill: float, bay: float, base: Color, frame: Color) -
 
     top, rail = size.height, min(0.06, depth)
     parts = [
-        box("body", (-size.half_length, size.half_length), (-size.half_width, size.half_width), (0, top), None, solid=True),
+        box(
+            "body",
+            (-size.half_length, size.half_length),
+            (-size.half_width, size.half_width),
+            (0, top),
+            None,
+            solid=True,
+        ),
         piece("sill", (-reach, reach), depth, (0, sill), base),
         piece("ledge", (-reach, reach), depth, (sill, sill + 0.03), frame),
         piece("glass", (-reach, reach), 0.25 * depth, (sill + 0.03, top - 0.05), palette.GLASS),
@@ -72,18 +79,28 @@ def trolley(size: Size) -> list[Part]:
     parts = [
         box("body", (-length, length), (-width, width), (0, top), None, solid=True),
         box("deck_low", (-length + 0.03, length - 0.03), (-width + 0.01, width - 0.01), (0.2, 0.24), palette.STEEL),
-        box("deck_high", (-length + 0.03, length - 0.03), (-width + 0.01, width - 0.01), (0.62 * top, 0.62 * top + 0.04), palette.STEEL),
+        box(
+            "deck_high",
+            (-length + 0.03, length - 0.03),
+            (-width + 0.01, width - 0.01),
+            (0.62 * top, 0.62 * top + 0.04),
+            palette.STEEL,
+        ),
         box("handle", (-length, -length + 0.03), (-width + 0.03, width - 0.03), (top - 0.04, top), palette.DARK),
     ]
-    for i, (x, y) in enumerate(((-1, -1), (-1, 1), (1, -1), (1, 1))):
+    for i, (x, y) in enumerate(((-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0))):
         post_x, post_y = x * (length - 0.04), y * (width - 0.03)
         post = (0.1, top if x < 0 else 0.62 * top + 0.15)
-        parts.append(box(f"post_{i}", (post_x - 0.015, post_x + 0.015), (post_y - 0.015, post_y + 0.015), post, palette.STEEL))
+        parts.append(
+            box(f"post_{i}", (post_x - 0.015, post_x + 0.015), (post_y - 0.015, post_y + 0.015), post, palette.STEEL)
+        )
         parts.append(ellipsoid(f"wheel_{i}", (post_x, post_y, 0.05), (0.05, 0.025, 0.05), palette.DARK))
     for i, (x, color) in enumerate(((-0.5, palette.WHITE), (0.0, palette.BLANKET), (0.5, palette.GOWN))):
         across = (x * length - 0.2 * length, x * length + 0.2 * length)
         parts.append(box(f"linen_low_{i}", across, (-0.7 * width, 0.7 * width), (0.24, 0.44), color))
-        parts.append(box(f"linen_high_{i}", across, (-0.7 * width, 0.7 * width), (0.62 * top + 0.04, 0.62 * top + 0.16), color))
+        parts.append(
+            box(f"linen_high_{i}", across, (-0.7 * width, 0.7 * width), (0.62 * top + 0.04, 0.62 * top + 0.16), color)
+        )
     return parts
 
 

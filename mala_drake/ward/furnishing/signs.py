@@ -72,7 +72,13 @@ def standing_sign(name: str, category: str, letters_uri: str, height: float) -> 
     """A panel on a pole, facing south and tilted towards the sky, its middle at `height` metres."""
     half_width, half_height = _panel_half_size(name)
     rotation = (pi / 2 - _TILT, 0.0, 0.0)
-    panel = box("panel", (-half_width, half_width), (-half_height, half_height), (-0.02, 0.02), palette.FUNCTION_COLORS[category])
+    panel = box(
+        "panel",
+        (-half_width, half_width),
+        (-half_height, half_height),
+        (-0.02, 0.02),
+        palette.FUNCTION_COLORS[category],
+    )
     # The letters lie 3 cm in front of the panel's middle, along the panel's normal (0, -cos tilt, sin tilt).
     return [
         cylinder("pole", 0, 0, (0, height), 0.03, palette.GRAY),

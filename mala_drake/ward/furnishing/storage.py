@@ -46,7 +46,9 @@ def base_unit(size: Size, body: Color, front: Color, *, doors: int = 3, top: Col
         parts.append(box(f"door_{i}", across, (-width + 0.003, -width + 0.015), (0.11, LEDGE_HEIGHT - 0.06), front))
         middle = left + step / 2
         grip = (middle - 0.08, middle + 0.08)
-        parts.append(box(f"grip_{i}", grip, (-width, -width + 0.003), (LEDGE_HEIGHT - 0.16, LEDGE_HEIGHT - 0.14), palette.DARK))
+        parts.append(
+            box(f"grip_{i}", grip, (-width, -width + 0.003), (LEDGE_HEIGHT - 0.16, LEDGE_HEIGHT - 0.14), palette.DARK)
+        )
     return parts
 
 
@@ -86,7 +88,9 @@ def pharmacy_cabinet(size: Size) -> list[Part]:
     parts += [
         box("roof", (-length, length), (front, size.half_width), (roof, roof + 0.02), green),
         box("roof_cross_bar", (-0.36, 0.36), (middle - 0.12, middle + 0.12), (roof + 0.02, roof + 0.04), palette.WHITE),
-        box("roof_cross_pole", (-0.12, 0.12), (middle - 0.36, middle + 0.36), (roof + 0.02, roof + 0.041), palette.WHITE),
+        box(
+            "roof_cross_pole", (-0.12, 0.12), (middle - 0.36, middle + 0.36), (roof + 0.02, roof + 0.041), palette.WHITE
+        ),
         box("board", (-0.3, 0.3), (front, front + 0.02), (roof - 0.5, roof - 0.02), palette.WHITE),
         box("cross_bar", (-0.18, 0.18), (front - 0.01, front), (roof - 0.32, roof - 0.2), green),
         box("cross_pole", (-0.06, 0.06), (front - 0.011, front), (roof - 0.44, roof - 0.08), green),
@@ -125,5 +129,7 @@ def pantry_shelf(size: Size) -> list[Part]:
             content = ((0.80, 0.30, 0.22), (0.88, 0.72, 0.40), (0.45, 0.62, 0.30), palette.CREAM)[(level + i) % 4]
             tall = 0.16 + 0.05 * ((level + 2 * i) % 3)
             parts.append(cylinder(f"jar_{level}_{i}", x, front + 0.15, (z, z + tall), 0.085, content))
-            parts.append(cylinder(f"lid_{level}_{i}", x, front + 0.15, (z + tall, z + tall + 0.02), 0.07, palette.DARK_WOOD))
+            parts.append(
+                cylinder(f"lid_{level}_{i}", x, front + 0.15, (z + tall, z + tall + 0.02), 0.07, palette.DARK_WOOD)
+            )
     return ledge_solids(size) + base_unit(size, palette.WOOD, orange, top=palette.CREAM) + parts
