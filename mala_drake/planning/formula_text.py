@@ -108,9 +108,8 @@ class FormulaText:
 
     def _comparison(self, node: Group, scope: Scope) -> str:
         left, right = node.items[1:]
-        objects = [self._term(side, scope) for side in (left, right) if isinstance(side, Symbol) and not side.is_number]
-        if node.head == "=" and len(objects) == 2:
-            return f"(= {' '.join(objects)})"
+        if node.head == "=" and all(isinstance(side, Symbol) and not side.is_number for side in (left, right)):
+            return f"(= {self._term(left, scope)} {self._term(right, scope)})"
         return f"({node.head} {self.expression(left, scope)} {self.expression(right, scope)})"
 
     def atom(self, node: Node, scope: Scope) -> str:

@@ -51,7 +51,7 @@ class NumberTable:
         for index, polynomial in enumerate(task.polynomials):
             for name in polynomial.statics():
                 self._readers.setdefault(name, []).append(index)
-        self._last: tuple[int, tuple[Fraction | None, ...], dict[int, _Filled | None]] = (0, (), {})
+        self._last: tuple[int, tuple[Fraction | None, ...], dict[int, _Filled | None]] = (-1, (), {})
 
     def _steps_only(self) -> bool:
         constants: set[int] = set()

@@ -86,6 +86,7 @@ class Planner:
         if grounding.operators.goal is None:
             return "unsolvable", None, ()
         model = Model(grounding.operators, grounding.table, state.values)
+        initial_cost = self._initial_cost(grounding, state)
         start = (grounding.operators.mask(state.facts), model.numbers.initial())
         if not never_gains(model, state.values):
             solution = self._visit_all(model, start, budget)
@@ -95,7 +96,7 @@ class Planner:
             solution = self._a_star(grounding, model, start, budget)
         if solution is None:
             return "unsolvable", None, ()
-        cost = self._initial_cost(grounding, state) + model.numbers.exact(solution.cost)
+        cost = initial_cost + model.numbers.exact(solution.cost)
         metric = self.task.description.metric
         if metric is not None and not metric.minimize:
             cost = -cost
@@ -116,13 +117,21 @@ class Planner:
             return exhaustive(model, start, budget=budget)
         except UnboundedError:
             raise BadInput(
-                self.task.description.problem_name, "no plan is optimal", "a metric that cannot improve without end"
+                f"problem {self.task.description.problem_name}: :metric",
+                "improves without end, no plan is optimal",
+                "a metric with a bound",
             ) from None
 
-    @staticmethod
-    def _initial_cost(grounding: Grounding, state: SymbolicState) -> Fraction:
+    def _initial_cost(self, grounding: Grounding, state: SymbolicState) -> Fraction:
+        """The metric at the start, without the rest of it if that is a function of the state not defined there."""
         split = grounding.split
-        total = evaluate(split.rest, state.values) or Fraction(0)
+        total = evaluate(split.rest, state.values)
+        if total is None and split.rest.fluents():
+            total = Fraction(0)
         for fluent, weight in split.weights.items():
-            total += (evaluate(weight, state.values) or 0) * state.values[fluent]
+            factor = evaluate(weight, state.values)
+            total = None if total is None or factor is None else total + factor * state.values[fluent]
+        if total is None:
+            where = f"problem {self.task.description.problem_name}: :metric"
+            raise BadInput(where, "is undefined for every plan", "values in :init for what it reads")
         return total

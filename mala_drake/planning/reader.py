@@ -109,7 +109,8 @@ class _Description:
         # A metric may read `total-time` without a declaration: it is the number of steps.
         metric_functions: Signatures = {_TOTAL_TIME: (), **self._functions}
         self._in_domain = Resolver(domain_source, self._parents, constants, self._predicates, self._functions)
-        self._in_problem = Resolver(problem_source, self._parents, self._objects, self._predicates, metric_functions)
+        self._in_problem = Resolver(problem_source, self._parents, self._objects, self._predicates, self._functions)
+        self._in_metric = Resolver(problem_source, self._parents, self._objects, self._predicates, metric_functions)
 
     def build(self) -> syntax.Description:
         """The finished task."""
@@ -192,7 +193,7 @@ class _Description:
         tree = self._problem.metric
         if tree is None:
             return None
-        return syntax.Metric(tree.optimization == "minimize", self._in_problem.expression(tree.expression, {}))
+        return syntax.Metric(tree.optimization == "minimize", self._in_metric.expression(tree.expression, {}))
 
 
 def _with_effect(action: syntax.ActionSchema, effect: syntax.Effect) -> syntax.ActionSchema:

@@ -1,0 +1,12 @@
+;; What is in the briefcase moves with it.
+(define (domain briefcase)
+  (:requirements :adl)
+  (:types portable location)
+  (:predicates (at ?x - portable ?l - location) (in ?x - portable) (is-at ?l - location))
+  (:action move :parameters (?from ?to - location)
+    :precondition (and (is-at ?from) (not (= ?from ?to)))
+    :effect (and (is-at ?to) (not (is-at ?from))
+      (forall (?x - portable) (when (in ?x) (and (at ?x ?to) (not (at ?x ?from)))))))
+  (:action take-out :parameters (?x - portable) :precondition (in ?x) :effect (not (in ?x)))
+  (:action put-in :parameters (?x - portable ?l - location)
+    :precondition (and (not (in ?x)) (at ?x ?l) (is-at ?l)) :effect (in ?x)))

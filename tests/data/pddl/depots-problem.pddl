@@ -1,0 +1,10 @@
+;; Two crates of 6 for a truck that carries 10: three drives of 4. The upper crate arrives first, waits on the other
+(define (problem two-crates)
+  (:domain depots)
+  (:objects depot shop - place t - truck h1 h2 - hoist pal1 pal2 pal3 - pallet c1 c2 - crate)
+  (:init (at t depot) (at h1 depot) (at h2 shop) (available h1) (available h2) (at pal1 depot) (at pal2 shop)
+    (at pal3 shop) (clear pal2) (clear pal3) (at c1 depot) (on c1 pal1) (at c2 depot) (on c2 c1) (clear c2)
+    (= (distance depot shop) 4) (= (distance shop depot) 4) (= (distance depot depot) 0) (= (distance shop shop) 0)
+    (= (load-limit t) 10) (= (current-load t) 0) (= (weight c1) 6) (= (weight c2) 6) (= (fuel-cost) 0))
+  (:goal (and (on c1 pal2) (on c2 c1)))
+  (:metric minimize (fuel-cost)))

@@ -1,0 +1,18 @@
+;; A lift in which stopping boards and serves everybody who waits or wants to get off there (Miconic with conditions).
+(define (domain lift)
+  (:requirements :adl :action-costs)
+  (:types floor passenger vip - object)
+  (:predicates (origin ?p - passenger ?f - floor) (destination ?p - passenger ?f - floor) (above ?low ?high - floor)
+    (boarded ?p - passenger) (served ?p - passenger) (lift-at ?f - floor) (no-access ?p - passenger ?f - floor))
+  (:functions (total-cost))
+  (:action stop :parameters (?f - floor)
+    :precondition (and (lift-at ?f)
+      (imply (exists (?p - passenger) (and (boarded ?p) (no-access ?p ?f))) (forall (?q - passenger) (served ?q))))
+    :effect (and (increase (total-cost) 2)
+      (forall (?p - passenger) (and
+        (when (and (boarded ?p) (destination ?p ?f)) (and (not (boarded ?p)) (served ?p)))
+        (when (and (origin ?p ?f) (not (served ?p))) (boarded ?p))))))
+  (:action up :parameters (?from ?to - floor) :precondition (and (lift-at ?from) (above ?from ?to))
+    :effect (and (lift-at ?to) (not (lift-at ?from)) (increase (total-cost) 1)))
+  (:action down :parameters (?from ?to - floor) :precondition (and (lift-at ?from) (above ?to ?from))
+    :effect (and (lift-at ?to) (not (lift-at ?from)) (increase (total-cost) 1))))

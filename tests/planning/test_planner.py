@@ -1,0 +1,382 @@
+"""Plans are optimal: known optima, blind search, a brute force of the test's own, and an independent validator agree."""
+
+import itertools
+import os
+import random
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import mala_drake.planning.planner as mut
+from mala_drake.errors import BadInput
+from mala_drake.planning import PlanningTask, validate_plan
+
+DATA = Path(__file__).parent.parent / "data" / "pddl"
+
+# Each problem file says why.
+KNOWN_OPTIMA = {
+    "blocks": 12,
+    "briefcase": 4,
+    "counters": 4,
+    "delivery": 28,
+    "depots": 15,
+    "gripper": 11,
+    "hanoi": 15,
+    "lift": 12,
+    "logistics": 17,
+    "sailing": 5,
+    "zenotravel": 112,
+}
+
+
+@pytest.mark.parametrize("search", ["astar", "ucs"])
+@pytest.mark.parametrize("name", KNOWN_OPTIMA)
+def test_finds_the_known_optimum(load, name, search):
+    task = load(name)
+    plan = mut.Planner(task, search).solve()
+    assert plan.status == "optimal"
+    assert plan.cost == KNOWN_OPTIMA[name]
+    verdict = validate_plan(task, plan.actions)
+    assert verdict.valid, verdict.reason
+    assert verdict.cost == plan.cost
+
+
+def random_weights(generator):
+    weights = [generator.random() for _ in range(5)]
+    return [weight / sum(weights) for weight in weights]
+
+
+def test_care_plans_cost_what_blind_search_says_from_states_along_the_way(load):
+    task = load("care")
+    planner, blind = mut.Planner(task), mut.Planner(task, "ucs")
+    generator = random.Random(4)
+    for battery in (0.37, 0.31):
+        state = task.initial_state.with_fluents({("battery-soc", "robot1"): battery})
+        for action in planner.solve(state).actions[:5]:
+            state = task.apply(state, action)
+        weights = random_weights(generator)
+        plan = planner.solve(state, weights)
+        assert plan.status == "optimal"
+        truth = blind.solve(state, weights)
+        assert plan.cost == truth.cost
+        assert plan.expanded < truth.expanded
+        verdict = validate_plan(task, plan.actions, state=task.with_weights(state, weights))
+        assert verdict.valid
+        assert verdict.cost == plan.cost
+
+
+def test_low_battery_makes_the_robot_recharge_or_give_up(load):
+    task = load("care")
+    planner = mut.Planner(task)
+    tired = planner.solve(task.initial_state.with_fluents({"(battery-soc robot1)": 0.3}))
+    assert any(action.startswith("(recharge") for action in tired.actions)
+    empty = planner.solve(task.initial_state.with_fluents({"(battery-soc robot1)": 0.05}))
+    assert (empty.status, empty.cost, empty.actions) == ("unsolvable", None, ())
+
+
+def test_a_replan_uses_the_earlier_grounding_and_few_expansions(load):
+    task = load("care")
+    planner = mut.Planner(task)
+    planner.solve()
+    grounding = task.grounding(task.initial_state)
+    generator = random.Random(5)
+    state = task.initial_state
+    while True:
+        weights = random_weights(generator)
+        plan = planner.solve(state, weights)
+        assert plan.status == "optimal"
+        assert plan.expanded < 500
+        assert task.grounding(task.with_weights(state, weights)) is grounding
+        if not plan.actions:
+            break
+        state = task.apply(state, plan.actions[0])
+    assert task.is_goal(state)
+
+
+def test_the_goal_already_reached_gives_the_empty_plan(load):
+    task = load("gripper")
+    there = [("in", f"b{i}", "there") for i in range(1, 5)]
+    plan = mut.Planner(task).solve(task.initial_state.with_facts(add=there))
+    assert (plan.status, plan.cost, plan.actions) == ("optimal", 0, ())
+
+
+def test_nowhere_is_an_ordinary_state(load):
+    task = load("care")
+    lost = task.initial_state.with_facts(remove=["(at robot1 home)"])
+    assert mut.Planner(task).solve(lost).status == "unsolvable"
+
+
+def test_facts_that_no_action_brings_about_are_planned_with_when_observed(load):
+    # Nothing in the model makes the dispenser hand over insulin while antibiotic is wanted; the world may.
+    task = load("care")
+    planner = mut.Planner(task)
+    planner.solve()
+    surprised = task.initial_state.with_facts(
+        add=["(has-medicine)", "(holds-medicine insulin)", "(at robot1 north)"], remove=["(at robot1 home)"]
+    )
+    plan = planner.solve(surprised)
+    assert "(put_down_medicine robot1 north insulin)" in plan.actions
+    assert validate_plan(task, plan.actions, state=surprised).valid
+
+
+def test_a_changed_static_fact_changes_the_plan(load):
+    task = load("care")
+    planner = mut.Planner(task)
+    usual = planner.solve()
+    assert any("antibiotic" in action for action in usual.actions)
+    other = task.initial_state.with_facts(add=["(requested analgesic)"], remove=["(requested antibiotic)"])
+    assert any("collect_analgesic" in action for action in planner.solve(other).actions)
+    assert planner.solve().actions == usual.actions
+
+
+def test_weights_set_the_fluents_w0_to_w4(load):
+    task = load("care")
+    planner = mut.Planner(task)
+    by_position = planner.solve(weights=[0.5, 0.12, 0.14, 0.14, 0.1])
+    by_name = planner.solve(weights={"w0": 0.5, "w1": 0.12, "w2": 0.14, "w3": 0.14, "w4": 0.1})
+    by_fluent = planner.solve(fluents={"w0": 0.5, "(w1)": 0.12, ("w2",): 0.14, "w3": 0.14, "w4": 0.1})
+    assert by_position.cost == by_name.cost == by_fluent.cost != planner.solve().cost
+
+
+def test_wrong_weights_and_searches_are_refused(load):
+    task = load("care")
+    planner = mut.Planner(task)
+    with pytest.raises(BadInput, match="w5"):
+        planner.solve(weights=[0.1] * 6)
+    with pytest.raises(BadInput, match="finite"):
+        planner.solve(weights=[float("nan")] * 5)
+    with pytest.raises(BadInput, match="dijkstra"):
+        mut.Planner(task, "dijkstra")
+    with pytest.raises(BadInput, match="no such fact"):
+        planner.solve(task.initial_state.with_facts(add=["(asleep robot1)"]))
+    with pytest.raises(BadInput, match="no object 'robot9'"):
+        planner.solve(task.initial_state.with_facts(add=["(at robot9 home)"]))
+
+
+def test_limits_are_told_apart_from_unsolvable(load):
+    task = load("hanoi")
+    plan = mut.Planner(task, "ucs").solve(max_expansions=10)
+    assert (plan.status, plan.cost, plan.actions, plan.expanded) == ("timeout", None, (), 10)
+    assert mut.Planner(task, "ucs").solve(max_expansions=81).status == "optimal"
+    assert mut.Planner(load("care"), "ucs").solve(timeout=1e-9).status == "timeout"
+
+
+def test_plans_do_not_depend_on_the_hash_seed():
+    program = (
+        "import sys; from mala_drake.planning import solve_files\n"
+        "for name in ('care', 'logistics', 'lift', 'delivery'):\n"
+        "    plan = solve_files(f'{sys.argv[1]}/{name}-domain.pddl', f'{sys.argv[1]}/{name}-problem.pddl')\n"
+        "    print(plan.actions, plan.cost, plan.expanded)\n"
+    )
+    outputs = {
+        subprocess.run(
+            [sys.executable, "-c", program, str(DATA)],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(outputs) == 1
+
+
+def counter_task(metric, *, effect="(increase (score) 1)", condition="(< (steps) 5)"):
+    domain = f"""(define (domain d) (:functions (score) (steps) (size))
+      (:action step :precondition {condition} :effect (and (increase (steps) 1) {effect}))
+      (:action stop :effect (increase (size) 1)))"""
+    problem = f"""(define (problem p) (:domain d) (:init (= (score) 0) (= (steps) 0) (= (size) 1))
+      (:goal (>= (steps) 2)) (:metric {metric}))"""
+    return PlanningTask.parse(domain, problem)
+
+
+@pytest.mark.parametrize("search", ["astar", "ucs"])
+def test_maximising_goes_on_beyond_the_first_goal(search):
+    plan = mut.Planner(counter_task("maximize (score)"), search).solve()
+    assert (plan.status, plan.cost, len(plan.actions)) == ("optimal", 5, 5)
+
+
+@pytest.mark.parametrize("search", ["astar", "ucs"])
+def test_a_metric_that_improves_without_end_has_no_optimum(search):
+    with pytest.raises(BadInput, match="no plan is optimal"):
+        mut.Planner(counter_task("maximize (size)"), search).solve()
+
+
+def test_a_negative_step_cost_is_not_taken_for_the_end():
+    task = counter_task("minimize (score)", effect="(when (= (steps) 3) (decrease (score) 7))")
+    plan = mut.Planner(task).solve()
+    assert (plan.cost, len(plan.actions)) == (-7, 4)
+
+
+def test_infinitely_many_states_end_in_timeout_not_in_a_false_answer():
+    task = counter_task("maximize (/ (score) (size))", condition="(>= (steps) 0)")
+    plan = mut.Planner(task).solve(max_expansions=200)
+    assert plan.status == "timeout"
+
+
+def test_products_and_quotients_of_fluents_in_the_metric():
+    product = mut.Planner(counter_task("minimize (* (steps) (size))")).solve()
+    assert (product.status, product.cost) == ("optimal", 2)
+    domain = """(define (domain d) (:functions (steps) (size))
+      (:action step :precondition (< (steps) 5) :effect (increase (steps) 1)))"""
+    problem = """(define (problem p) (:domain d) (:init (= (steps) 0) (= (size) 3)) (:goal (>= (steps) 2))
+      (:metric minimize (/ (size) (steps))))"""
+    quotient = mut.Planner(PlanningTask.parse(domain, problem)).solve()
+    assert (quotient.status, quotient.cost, len(quotient.actions)) == ("optimal", Fraction(3, 5), 5)
+
+
+# Random tasks. The brute force below knows nothing of grounding, search or metrics: it walks the states by name and
+# relaxes distances, with `cost` the one fluent that nothing reads.
+
+FACTS = ("p", "q")
+literal = st.tuples(st.sampled_from(FACTS), st.booleans()).map(
+    lambda pair: f"({pair[0]})" if pair[1] else f"(not ({pair[0]}))"
+)
+comparison = st.tuples(
+    st.sampled_from([">=", "<=", "=", ">", "<"]), st.sampled_from(["x", "y"]), st.integers(0, 3)
+).map(lambda parts: f"({parts[0]} ({parts[1]}) {parts[2]})")
+plain = st.one_of(literal, comparison)
+condition = st.one_of(
+    plain,
+    st.tuples(plain, plain).map(lambda pair: f"(or {pair[0]} {pair[1]})"),
+    st.tuples(plain, plain).map(lambda pair: f"(imply {pair[0]} {pair[1]})"),
+)
+bounded = st.sampled_from(
+    [
+        "(when (< (x) 3) (increase (x) 1))",
+        "(when (> (x) 0) (decrease (x) 1))",
+        "(when (< (y) 3) (increase (y) 1.5))",
+        "(assign (y) 0)",
+        "(assign (x) 2)",
+        "(assign (y) (x))",
+    ]
+)
+
+
+@st.composite
+def random_tasks(draw, *, negative):
+    actions = []
+    costs = st.sampled_from(["0", "1", "0.5", "2.25", "(x)", "(* 0.5 (y))"] + (["-1", "(- (x))"] if negative else []))
+    for index in range(draw(st.integers(2, 4))):
+        needs = " ".join(draw(st.lists(condition, max_size=2)))
+        does = draw(st.lists(st.one_of(literal, bounded), min_size=1, max_size=3))
+        does += [
+            f"(when {draw(condition)} {draw(st.one_of(literal, bounded))})" for _ in range(draw(st.integers(0, 2)))
+        ]
+        does.append(f"(increase (cost) {draw(costs)})")
+        if draw(st.booleans()):
+            does.append(f"(when {draw(condition)} (increase (cost) {draw(costs)}))")
+        actions.append(f"(:action a{index} :precondition (and {needs}) :effect (and {' '.join(does)}))")
+    metric = draw(
+        st.sampled_from(
+            ["", "minimize (cost)", "minimize (+ (* 2 (cost)) (x))", "minimize (* 0.5 (+ (cost) (* (x) (y))))"]
+            + (["maximize (+ (x) (y))", "maximize (- (x) (cost))", "minimize (/ (y) (x))"] if negative else [])
+        )
+    )
+    start = [f"({fact})" for fact in FACTS if draw(st.booleans())]
+    goal = " ".join(draw(st.lists(condition, min_size=1, max_size=2)))
+    domain = "(define (domain d) (:predicates (p) (q)) (:functions (x) (y) (cost))" + "\n".join(actions) + ")"
+    problem = (
+        f"(define (problem p) (:domain d) (:init {' '.join(start)} (= (x) {draw(st.integers(0, 2))}) (= (y) 0.5)"
+        f" (= (cost) 0)) (:goal (and {goal})) {f'(:metric {metric})' if metric else ''})"
+    )
+    return domain, problem
+
+
+def brute_force(task):
+    """The best metric over all plans, None if there is no plan, "unbounded" if there is no best one."""
+    metric = task.description.metric
+    names = [f"({schema.name})" for schema in task.description.actions]
+
+    def key(state):
+        return state.facts, state.value("x"), state.value("y")
+
+    start = task.initial_state
+    states = {key(start): start}
+    edges = []
+    queue = [start]
+    for state in queue:
+        for name in names:
+            try:
+                after = task.apply(state, name)
+            except ValueError:
+                continue
+            edges.append((key(state), key(after), after.value("cost") - state.value("cost")))
+            if key(after) not in states:
+                states[key(after)] = after
+                queue.append(after)
+    goals = {each for each, state in states.items() if task.is_goal(state)}
+    sign = -1 if metric is not None and not metric.minimize else 1
+    # How much one unit of cost adds to the metric, from two states that differ in it alone.
+    slopes = {}
+    for each in goals:
+        values = [task.metric_value(states[each].with_fluents({"cost": amount})) for amount in (0, 1)]
+        if metric is None:
+            slopes[each] = (Fraction(0), Fraction(1))
+        elif None not in values:
+            slopes[each] = (sign * values[0], sign * (values[1] - values[0]))
+    if not slopes:
+        return "undefined" if goals else None
+    slope = next(iter(slopes.values()))[1]
+    steps = [(a, b, Fraction(1) if metric is None else slope * cost) for a, b, cost in edges]
+    useful: set = set()
+    more = set(slopes)
+    while more:
+        useful |= more
+        more = {a for a, b, _ in steps if b in useful} - useful
+    distance = {key(start): Fraction(0)}
+    for round_number in itertools.count():
+        changed = False
+        for a, b, cost in steps:
+            if a in distance and b in useful and (b not in distance or distance[a] + cost < distance[b]):
+                distance[b] = distance[a] + cost
+                changed = True
+        if not changed:
+            break
+        if round_number > len(states):
+            return "unbounded"
+    return sign * min(distance[each] + slopes[each][0] for each in slopes if each in distance)
+
+
+def task_assigns_metric(task):
+    """Whether an action mentions x or y as a target, so that the metric may become defined on the way."""
+    return any(f"fluent=Fluent(name='{name}'" in repr(task.description.actions) for name in "xy")
+
+
+def check_against_brute_force(texts):
+    task = PlanningTask.parse(*texts)
+    truth = brute_force(task)
+    for search in ("astar", "ucs"):
+        if truth == "unbounded":
+            with pytest.raises(BadInput, match="no plan is optimal"):
+                mut.Planner(task, search).solve()
+            continue
+        if truth == "undefined" and task.metric_value(task.initial_state) is None and not task_assigns_metric(task):
+            with pytest.raises(BadInput, match="undefined for every plan"):
+                mut.Planner(task, search).solve()
+            continue
+        truth = None if truth == "undefined" else truth
+        plan = mut.Planner(task, search).solve()
+        assert plan.status == ("unsolvable" if truth is None else "optimal")
+        assert plan.cost == truth
+        if truth is not None:
+            verdict = validate_plan(task, plan.actions)
+            assert verdict.valid, verdict.reason
+            assert verdict.cost == truth
+
+
+@settings(max_examples=100, deadline=None)
+@given(random_tasks(negative=False))
+def test_random_tasks_are_solved_optimally(texts):
+    check_against_brute_force(texts)
+
+
+@settings(max_examples=100, deadline=None)
+@given(random_tasks(negative=True))
+def test_random_tasks_with_gains_are_solved_optimally_or_refused(texts):
+    check_against_brute_force(texts)
