@@ -1,0 +1,187 @@
+"""The feature meter: what an episode really cost, with the definitions that the planner predicts by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake.common.containers import namedview
+from pydrake.common.value import Value
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
+
+from mala_drake.clock import METER_OFFSET, TICK
+from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.ward.congestion import sample
+from mala_drake.ward.features import (
+    FEATURE_SCALES,
+    FEATURES,
+    IDEAL_HAND_OVER,
+    FeatureRates,
+    FeatureScales,
+    approach_error,
+)
+from mala_drake.ward.in_place_actions import Verb, in_place_action
+from mala_drake.ward.ward_map import Ward
+
+FASTEST = 3.0
+"""Metres per second; a robot that got somewhere faster was carried, and that is nobody's driving."""
+
+_Sums = namedview(
+    "_Sums",
+    [
+        "task",  # Sequence of the task that is measured, 0 before the first one.
+        "closed",  # 1 once it is finished.
+        "duration",  # Seconds.
+        "risk",
+        "charge_used",
+        "discomfort",
+        "approach_error",  # Of the newest hand-over; 1, the worst, before there is one.
+        "begun",  # Time at which it began, seconds.
+        "charge_at_start",
+        "charge",  # At the newest tick, like the position.
+        "x",
+        "y",
+    ],
+)
+
+
+class FeatureMeter(LeafSystem):
+    """Sums up time, risk, charge, discomfort and approach error of the task that is under way.
+
+    .. pydrake_system::
+
+        name: FeatureMeter
+        input_ports:
+        - task
+        - task_report
+        - action
+        - robot_state
+        - charge
+        output_ports:
+        - features
+        - episode_report
+
+    `features` are (time, safety, battery, proximity, approach) so far, each divided by its scale and cut to [0, 1].
+    `episode_report` is empty (sequence 0) until the task is finished, and again once the next one begins; its `details`
+    are the five sums unscaled.
+
+    Between two ticks the robot is taken to drive straight, at constant speed, and the rates of
+    `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not counted as
+    negative use. The approach error is that of the pose from which things are handed over. A robot state that is not
+    finite, or farther away than the robot can have driven, adds time but no driving.
+    """
+
+    def __init__(
+        self,
+        ward: Ward,
+        *,
+        scales: Mapping[str, FeatureScales] = FEATURE_SCALES,
+        ideal: tuple[float, float, float] = IDEAL_HAND_OVER,
+    ) -> None:
+        """Constructs the meter.
+
+        Args:
+            ward: the map.
+            scales: what counts as 1, by the name of the task; tasks not named have the default scales.
+            ideal: the pose (x, y, yaw) from which the patient would like things to be handed over.
+        """
+        super().__init__()
+        self._rates = FeatureRates(ward)
+        self._scales = {name: value.as_array() for name, value in scales.items()}
+        self._ideal = ideal
+        self._task = self.DeclareAbstractInputPort("task", Value(Task()))
+        self._task_report = self.DeclareAbstractInputPort("task_report", Value(TaskReport()))
+        self._action = self.DeclareAbstractInputPort("action", Value(Action()))
+        self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
+        self._charge = self.DeclareVectorInputPort("charge", 1)
+        self._sums = self.DeclareDiscreteState(_Sums.Zero()[:])
+        ticket = {self.discrete_state_ticket(self._sums), self._task.ticket()}
+        self.DeclareVectorOutputPort("features", len(FEATURES), self._calc_features, prerequisites_of_calc=ticket)
+        self.DeclareAbstractOutputPort(
+            "episode_report",
+            lambda: Value(EpisodeReport()),
+            self._calc_episode_report,
+            prerequisites_of_calc=ticket | {self._task_report.ticket()},
+        )
+        self.DeclarePeriodicDiscreteUpdateEvent(TICK, METER_OFFSET, self._update)
+
+    def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
+        sums = _Sums(discrete_state.get_mutable_value(self._sums))
+        task = self._task.Eval(context)
+        if task.sequence != sums.task:
+            self._begin(context, sums, task)
+        elif task.sequence > 0 and not sums.closed:
+            self._integrate(context, sums)
+            report = self._task_report.Eval(context)
+            sums.closed = float(report.finished and report.sequence == task.sequence)
+
+    def _begin(self, context: Context, sums: Any, task: Task) -> None:
+        sums[:] = 0.0
+        sums.task = task.sequence
+        sums.approach_error = 1.0
+        sums.begun = context.get_time()
+        sums.charge_at_start = sums.charge = self._charge.Eval(context)[0]
+        sums.x, sums.y = self._robot_state.Eval(context)[:2]
+
+    def _integrate(self, context: Context, sums: Any) -> None:
+        elapsed = context.get_time() - sums.begun - sums.duration
+        x, y, yaw = self._robot_state.Eval(context)[:3]
+        charge = self._charge.Eval(context)[0]
+        sums.duration += elapsed
+        if math.isfinite(charge):
+            sums.charge_used += max(0.0, sums.charge - charge)
+            sums.charge = charge
+        if not math.isfinite(x + y + yaw):
+            return
+        came_from = (sums.x, sums.y) if math.dist((sums.x, sums.y), (x, y)) <= FASTEST * elapsed else (x, y)
+        middles, lengths = sample([came_from, (x, y)])
+        speeds = np.full(len(lengths), lengths.sum() / elapsed)
+        time = elapsed / len(lengths)  # All pieces of one chord are equally long.
+        sums.risk += self._rates.risk_rate(middles, speeds).sum() * time
+        sums.discomfort += self._rates.discomfort_rate(middles, speeds).sum() * time
+        if _is_handing_over(self._action.Eval(context)):
+            sums.approach_error = approach_error((x, y, yaw), self._ideal)
+        sums.x, sums.y = x, y
+
+    def _features(self, sums: Any, task: str) -> NDArray[np.float64]:
+        measured = np.array([sums.duration, sums.risk, sums.charge_used, sums.discomfort, sums.approach_error])
+        scales = self._scales.get(task)
+        return np.clip(measured / (FeatureScales().as_array() if scales is None else scales), 0.0, 1.0)
+
+    def _calc_features(self, context: Context, output: BasicVector) -> None:
+        sums = _Sums(context.get_discrete_state(self._sums).value())
+        output.SetFromVector(self._features(sums, self._task.Eval(context).name))
+
+    def _calc_episode_report(self, context: Context, output: Value) -> None:
+        sums = _Sums(context.get_discrete_state(self._sums).value())
+        task, report = self._task.Eval(context), self._task_report.Eval(context)
+        if not sums.closed or task.sequence != sums.task or report.sequence != sums.task:
+            output.set_value(EpisodeReport())
+            return
+        names = ("duration", "risk", "charge_used", "discomfort", "approach_error")
+        output.set_value(
+            EpisodeReport(
+                sequence=task.sequence,
+                task=task.name,
+                success=report.success,
+                failure=report.failure,
+                actions=report.actions,
+                features=tuple(self._features(sums, task.name).tolist()),
+                predicted_features=report.predicted_features,
+                plan_cost=report.plan_cost,
+                replans=report.replans,
+                mismatches=report.mismatches,
+                duration=float(sums.duration),
+                battery_start=float(sums.charge_at_start),
+                battery_end=float(sums.charge),
+                details=tuple((name, float(getattr(sums, name))) for name in names),
+            )
+        )
+
+
+def _is_handing_over(action: Action) -> bool:
+    work = in_place_action(action.name) if action.kind is ActionKind.IN_PLACE else None
+    return work is not None and work.verb is Verb.DELIVER
