@@ -17,6 +17,7 @@ from mala_drake.clock import TICK
 from mala_drake.experiments.episode_record import EpisodeFile, EpisodeRecord
 from mala_drake.experiments.episode_watch import EpisodeWatch
 from mala_drake.learning.convergence import convergence_episode
+from mala_drake.reporting.run_recording import RunRecording
 from mala_drake.scenario import Scenario
 from mala_drake.scheduling.sequence import task_names
 from mala_drake.station import MakeCareStation, StartEpisode, learner_state_of
@@ -50,8 +51,8 @@ def run_scenario(scenario: Scenario, options: RunOptions, *, watcher: Watcher | 
     Results are appended to `options.out` as they come; what was written stays, whatever happens later.
     """
     meshcat = _make_meshcat(options)
-    recording = _start_recording(options, meshcat)
     station = MakeCareStation(scenario, meshcat=meshcat)
+    recording = _start_recording(scenario, options, meshcat)
     names = task_names(scenario.task, episodes=scenario.episodes)
     file = EpisodeFile(options.out) if options.out else None
     records: list[EpisodeRecord] = []
@@ -87,7 +88,7 @@ def _run_episode(
     started: float,
     options: RunOptions,
     watcher: Watcher | None,
-    recording: Any,
+    recording: RunRecording | None,
 ) -> tuple[EpisodeRecord, float]:
     """Simulates until the episode is rated and learned from, or its time is up."""
     wall = time.perf_counter()
@@ -113,12 +114,11 @@ def _make_meshcat(options: RunOptions) -> Meshcat | None:
     return Meshcat() if options.live or options.html else None
 
 
-def _start_recording(options: RunOptions, meshcat: Meshcat | None) -> Any:
+def _start_recording(scenario: Scenario, options: RunOptions, meshcat: Meshcat | None) -> RunRecording | None:
     if options.html is None or meshcat is None:
         return None
-    from mala_drake.reporting.run_recording import RunRecording
-
-    return RunRecording(meshcat, options.html)
+    title = f"{scenario.task}, patient {scenario.profile_name.replace('_', ' ')}"
+    return RunRecording(meshcat, options.html, scenario.load_ward(), title=title)
 
 
 def summarise(scenario: Scenario, records: list[EpisodeRecord]) -> dict[str, Any]:
