@@ -2,8 +2,8 @@
 ;; supply room, checks both, and delivers them on a bedside table.
 ;;
 ;; Units: seconds, metres, radians; charge is the state of charge in [0, 1]. Every number that depends on the ward is a
-;; fluent of the problem. Stage cost of an action: w' f, where f = (time, safety, battery, proximity, approach), each
-;; divided by its scale, and the weights w0 ... w4 say what matters to the patient.
+;; fluent of the problem. Stage cost of an action: w' f, where the weights w0 ... w4 say what matters to the patient and
+;; f = (time, safety, battery, proximity, approach) is scaled, so that whole rounds have features between 0 and 1.
 ;;
 ;; What a robot carries has a label. Collecting an item gives it the label that was asked for; a check reads the true
 ;; one. `check_..._correct` confirms a requested label. A wrong one (found by a check, or observed in any other way) is
@@ -54,8 +54,8 @@
     ;; Actions at a place: seconds, and charge used.
     (collect-time) (check-time) (put-down-time) (deliver-time) (recharge-time)
     (collect-battery) (check-battery) (put-down-battery) (deliver-battery)
-    ;; What counts as 1 in each feature.
-    (time-scale) (safety-scale) (battery-scale) (proximity-scale) (approach-scale)
+    ;; How much of a scaled feature one unit is.
+    (feature-per-second) (feature-per-risk) (feature-per-charge) (feature-per-discomfort) (feature-per-error)
     ;; Preference weights.
     (w0) (w1) (w2) (w3) (w4)
     (terminal-weight)
@@ -77,10 +77,10 @@
       (at ?r pharmacy_north)
       (decrease (battery-soc ?r) (nav-battery ?from pharmacy_north))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from pharmacy_north) (time-scale)))
-        (* (w1) (/ (location-safety ?from pharmacy_north) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from pharmacy_north) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from pharmacy_north) (proximity-scale)))))
+        (* (w0) (nav-time ?from pharmacy_north) (feature-per-second))
+        (* (w1) (location-safety ?from pharmacy_north) (feature-per-risk))
+        (* (w2) (nav-battery ?from pharmacy_north) (feature-per-charge))
+        (* (w3) (proximity-feature ?from pharmacy_north) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_north)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_north)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from pharmacy_north))
@@ -97,10 +97,10 @@
       (at ?r pharmacy_south)
       (decrease (battery-soc ?r) (nav-battery ?from pharmacy_south))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from pharmacy_south) (time-scale)))
-        (* (w1) (/ (location-safety ?from pharmacy_south) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from pharmacy_south) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from pharmacy_south) (proximity-scale)))))
+        (* (w0) (nav-time ?from pharmacy_south) (feature-per-second))
+        (* (w1) (location-safety ?from pharmacy_south) (feature-per-risk))
+        (* (w2) (nav-battery ?from pharmacy_south) (feature-per-charge))
+        (* (w3) (proximity-feature ?from pharmacy_south) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_south)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_south)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from pharmacy_south))
@@ -117,10 +117,10 @@
       (at ?r supply_a)
       (decrease (battery-soc ?r) (nav-battery ?from supply_a))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from supply_a) (time-scale)))
-        (* (w1) (/ (location-safety ?from supply_a) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from supply_a) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from supply_a) (proximity-scale)))))
+        (* (w0) (nav-time ?from supply_a) (feature-per-second))
+        (* (w1) (location-safety ?from supply_a) (feature-per-risk))
+        (* (w2) (nav-battery ?from supply_a) (feature-per-charge))
+        (* (w3) (proximity-feature ?from supply_a) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_a)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_a)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from supply_a))
@@ -137,10 +137,10 @@
       (at ?r supply_b)
       (decrease (battery-soc ?r) (nav-battery ?from supply_b))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from supply_b) (time-scale)))
-        (* (w1) (/ (location-safety ?from supply_b) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from supply_b) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from supply_b) (proximity-scale)))))
+        (* (w0) (nav-time ?from supply_b) (feature-per-second))
+        (* (w1) (location-safety ?from supply_b) (feature-per-risk))
+        (* (w2) (nav-battery ?from supply_b) (feature-per-charge))
+        (* (w3) (proximity-feature ?from supply_b) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_b)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_b)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from supply_b))
@@ -157,10 +157,10 @@
       (at ?r charge_main)
       (decrease (battery-soc ?r) (nav-battery ?from charge_main))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from charge_main) (time-scale)))
-        (* (w1) (/ (location-safety ?from charge_main) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from charge_main) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from charge_main) (proximity-scale)))))
+        (* (w0) (nav-time ?from charge_main) (feature-per-second))
+        (* (w1) (location-safety ?from charge_main) (feature-per-risk))
+        (* (w2) (nav-battery ?from charge_main) (feature-per-charge))
+        (* (w3) (proximity-feature ?from charge_main) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from charge_main))
@@ -177,10 +177,10 @@
       (at ?r charge_backup)
       (decrease (battery-soc ?r) (nav-battery ?from charge_backup))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from charge_backup) (time-scale)))
-        (* (w1) (/ (location-safety ?from charge_backup) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from charge_backup) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from charge_backup) (proximity-scale)))))
+        (* (w0) (nav-time ?from charge_backup) (feature-per-second))
+        (* (w1) (location-safety ?from charge_backup) (feature-per-risk))
+        (* (w2) (nav-battery ?from charge_backup) (feature-per-charge))
+        (* (w3) (proximity-feature ?from charge_backup) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from charge_backup))
@@ -200,11 +200,11 @@
       (at ?r patient_bed_left)
       (decrease (battery-soc ?r) (nav-battery ?from patient_bed_left))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from patient_bed_left) (time-scale)))
-        (* (w1) (/ (location-safety ?from patient_bed_left) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from patient_bed_left) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from patient_bed_left) (proximity-scale)))
-        (* (w4) (/ (approach-feature patient_bed_left) (approach-scale)))))
+        (* (w0) (nav-time ?from patient_bed_left) (feature-per-second))
+        (* (w1) (location-safety ?from patient_bed_left) (feature-per-risk))
+        (* (w2) (nav-battery ?from patient_bed_left) (feature-per-charge))
+        (* (w3) (proximity-feature ?from patient_bed_left) (feature-per-discomfort))
+        (* (w4) (approach-feature patient_bed_left) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_left)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_left)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from patient_bed_left))
@@ -222,11 +222,11 @@
       (at ?r patient_bed_right)
       (decrease (battery-soc ?r) (nav-battery ?from patient_bed_right))
       (increase (stage_cost) (+
-        (* (w0) (/ (nav-time ?from patient_bed_right) (time-scale)))
-        (* (w1) (/ (location-safety ?from patient_bed_right) (safety-scale)))
-        (* (w2) (/ (nav-battery ?from patient_bed_right) (battery-scale)))
-        (* (w3) (/ (proximity-feature ?from patient_bed_right) (proximity-scale)))
-        (* (w4) (/ (approach-feature patient_bed_right) (approach-scale)))))
+        (* (w0) (nav-time ?from patient_bed_right) (feature-per-second))
+        (* (w1) (location-safety ?from patient_bed_right) (feature-per-risk))
+        (* (w2) (nav-battery ?from patient_bed_right) (feature-per-charge))
+        (* (w3) (proximity-feature ?from patient_bed_right) (feature-per-discomfort))
+        (* (w4) (approach-feature patient_bed_right) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_right)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_right)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
       (increase (total_time) (nav-time ?from patient_bed_right))
@@ -247,8 +247,8 @@
       (medication-is ?r med_antibiotic)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -265,8 +265,8 @@
       (medication-is ?r med_analgesic)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -283,8 +283,8 @@
       (medication-is ?r med_insulin)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -301,8 +301,8 @@
       (correct-medication ?r)
       (decrease (battery-soc ?r) (check-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (check-time) (time-scale)))
-        (* (w2) (/ (check-battery) (battery-scale)))))
+        (* (w0) (check-time) (feature-per-second))
+        (* (w2) (check-battery) (feature-per-charge))))
       (increase (total_time) (check-time))
       (increase (discrete_steps) 1)))
 
@@ -319,8 +319,8 @@
       (wrong-medication ?r)
       (decrease (battery-soc ?r) (check-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (check-time) (time-scale)))
-        (* (w2) (/ (check-battery) (battery-scale)))))
+        (* (w0) (check-time) (feature-per-second))
+        (* (w2) (check-battery) (feature-per-charge))))
       (increase (total_time) (check-time))
       (increase (discrete_steps) 1)))
 
@@ -340,8 +340,8 @@
       (available ?m ?l)
       (decrease (battery-soc ?r) (put-down-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (put-down-time) (time-scale)))
-        (* (w2) (/ (put-down-battery) (battery-scale)))))
+        (* (w0) (put-down-time) (feature-per-second))
+        (* (w2) (put-down-battery) (feature-per-charge))))
       (increase (total_time) (put-down-time))
       (increase (discrete_steps) 1)))
 
@@ -358,8 +358,8 @@
       (supplement-is ?r supp_vitamin_d)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -376,8 +376,8 @@
       (supplement-is ?r supp_electrolyte)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -394,8 +394,8 @@
       (supplement-is ?r supp_omega3)
       (decrease (battery-soc ?r) (collect-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (collect-time) (time-scale)))
-        (* (w2) (/ (collect-battery) (battery-scale)))))
+        (* (w0) (collect-time) (feature-per-second))
+        (* (w2) (collect-battery) (feature-per-charge))))
       (increase (total_time) (collect-time))
       (increase (discrete_steps) 1)))
 
@@ -412,8 +412,8 @@
       (correct-supplement ?r)
       (decrease (battery-soc ?r) (check-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (check-time) (time-scale)))
-        (* (w2) (/ (check-battery) (battery-scale)))))
+        (* (w0) (check-time) (feature-per-second))
+        (* (w2) (check-battery) (feature-per-charge))))
       (increase (total_time) (check-time))
       (increase (discrete_steps) 1)))
 
@@ -430,8 +430,8 @@
       (wrong-supplement ?r)
       (decrease (battery-soc ?r) (check-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (check-time) (time-scale)))
-        (* (w2) (/ (check-battery) (battery-scale)))))
+        (* (w0) (check-time) (feature-per-second))
+        (* (w2) (check-battery) (feature-per-charge))))
       (increase (total_time) (check-time))
       (increase (discrete_steps) 1)))
 
@@ -451,8 +451,8 @@
       (available ?s ?l)
       (decrease (battery-soc ?r) (put-down-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (put-down-time) (time-scale)))
-        (* (w2) (/ (put-down-battery) (battery-scale)))))
+        (* (w0) (put-down-time) (feature-per-second))
+        (* (w2) (put-down-battery) (feature-per-charge))))
       (increase (total_time) (put-down-time))
       (increase (discrete_steps) 1)))
 
@@ -477,9 +477,9 @@
       (forall (?s - supplement) (not (supplement-is ?r ?s)))
       (decrease (battery-soc ?r) (deliver-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (deliver-time) (time-scale)))
-        (* (w2) (/ (deliver-battery) (battery-scale)))
-        (* (w3) (/ (* (deliver-time) (standing-proximity patient_bed_left)) (proximity-scale)))))
+        (* (w0) (deliver-time) (feature-per-second))
+        (* (w2) (deliver-battery) (feature-per-charge))
+        (* (w3) (deliver-time) (standing-proximity patient_bed_left) (feature-per-discomfort))))
       (increase (total_time) (deliver-time))
       (increase (discrete_steps) 1)))
 
@@ -502,9 +502,9 @@
       (forall (?s - supplement) (not (supplement-is ?r ?s)))
       (decrease (battery-soc ?r) (deliver-battery))
       (increase (stage_cost) (+
-        (* (w0) (/ (deliver-time) (time-scale)))
-        (* (w2) (/ (deliver-battery) (battery-scale)))
-        (* (w3) (/ (* (deliver-time) (standing-proximity patient_bed_right)) (proximity-scale)))))
+        (* (w0) (deliver-time) (feature-per-second))
+        (* (w2) (deliver-battery) (feature-per-charge))
+        (* (w3) (deliver-time) (standing-proximity patient_bed_right) (feature-per-discomfort))))
       (increase (total_time) (deliver-time))
       (increase (discrete_steps) 1)))
 
@@ -513,6 +513,6 @@
     :precondition (at ?r ?c)
     :effect (and
       (assign (battery-soc ?r) 1.0)
-      (increase (stage_cost) (* (w0) (/ (recharge-time) (time-scale))))
+      (increase (stage_cost) (* (w0) (recharge-time) (feature-per-second)))
       (increase (total_time) (recharge-time))
       (increase (discrete_steps) 1))))

@@ -47,11 +47,11 @@
     (= (deliver-time) 20)
     (= (deliver-battery) 0.02)
     (= (recharge-time) 30)
-    (= (time-scale) 160)
-    (= (safety-scale) 0.25)
-    (= (battery-scale) 1)
-    (= (proximity-scale) 10)
-    (= (approach-scale) 1.25)
+    (= (feature-per-second) 0.00625)
+    (= (feature-per-risk) 4)
+    (= (feature-per-charge) 1)
+    (= (feature-per-discomfort) 0.1)
+    (= (feature-per-error) 0.8)
     (= (nearest-charger-battery pharmacy_north) 0.146)
     (= (nearest-charger-battery pharmacy_south) 0.1216)
     (= (nearest-charger-battery supply_a) 0.1375)
@@ -399,5 +399,5 @@
 
   (:metric minimize (+
     (stage_cost)
-    (* (terminal-weight) (* (w0) (/ (total_time) (time-scale))))
+    (* (terminal-weight) (w0) (total_time) (feature-per-second))
     (* 0.01 (discrete_steps)))))

@@ -9,7 +9,7 @@ from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionKind, Atom
 from mala_drake.messages import SymbolicState as ObservedState
 from mala_drake.planning.features import IN_TRANSIT, fill_problem, leg_fluents, location_name, targets
-from mala_drake.planning.leg_costs import LegCosts, Pose
+from mala_drake.planning.leg_costs import NO_COST, LegCosts, Pose
 from mala_drake.planning.source import read_text
 from mala_drake.planning.state import Amount, Name, SymbolicState
 from mala_drake.planning.syntax import Fact
@@ -101,6 +101,16 @@ class CareTask:
             state = state.with_fluents(self._transit_fluents(pose))
         return state.with_fluents({(_CHARGE, self._robot): observed.charge})
 
+    def typical_states(self) -> tuple[SymbolicState, ...]:
+        """A state at a place and one in transit: between them they need every ground action of the task."""
+        initial = self.planning_task.initial_state
+        here = ("at", self._robot, self._location(initial))
+        legs = {
+            fluent: 0 for place in self._targets for fluent in leg_fluents(NO_COST, IN_TRANSIT, location_name(place))
+        }
+        in_transit = initial.with_facts(add=[("at", self._robot, IN_TRANSIT)], remove=[here]).with_fluents(legs)
+        return (initial, in_transit)
+
     def mismatch(self, expected: SymbolicState, observed: ObservedState) -> tuple[Atom, ...]:
         """The atoms about the robot in which the observed state differs from the expected one, sorted.
 
@@ -132,7 +142,7 @@ class CareTask:
             start = self.planning_task.with_weights(before, weights)
             features.append(self._change(start, self.planning_task.apply(start, text), ("stage_cost",)))
         used = -self._change(before, self.planning_task.apply(before, text), (_CHARGE, self._robot))
-        features[_BATTERY] = max(used, 0.0) / float(before.values[("battery-scale",)])
+        features[_BATTERY] = max(used, 0.0) * float(before.values[("feature-per-charge",)])
         return tuple(features)
 
     def ways_closed_by(self, action: Action) -> tuple[tuple[str, str], ...]:

@@ -26,6 +26,7 @@ Fluents = dict[Fact, Decimal]
 
 _TARGETS: Mapping[str, tuple[str, ...]] = {"medication": ("pharmacy", "supply", "charger", "bedside")}
 _STARTS = ("home",)  # Categories of places that a robot leaves but is never sent to.
+_UNITS = ("second", "risk", "charge", "discomfort", "error")  # Of the unscaled features, in their order.
 _BEGIN = ";; BEGIN generated"
 _END = ";; END generated"
 
@@ -96,16 +97,15 @@ def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Flue
 
 
 def table_fluents(task: str) -> Fluents:
-    """What actions at a place take, and what counts as 1 in each feature."""
+    """What actions at a place take, and how much of a scaled feature one unit is."""
     fluents: Fluents = {}
     for verb in Verb:
         name = verb.value.replace("_", "-")
         fluents[(f"{name}-time",)] = _rounded(SECONDS[verb], 2)
         if verb is not Verb.RECHARGE:
             fluents[(f"{name}-battery",)] = _rounded(CHARGE[verb], 4)
-    scales = FEATURE_SCALES[task]
-    for feature in ("time", "safety", "battery", "proximity", "approach"):
-        fluents[(f"{feature}-scale",)] = _rounded(getattr(scales, feature), 3)
+    for unit, scale in zip(_UNITS, FEATURE_SCALES[task].as_array(), strict=True):
+        fluents[(f"feature-per-{unit}",)] = _rounded(1.0 / scale, 6)
     return fluents
 
 

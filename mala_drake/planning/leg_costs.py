@@ -43,6 +43,9 @@ class LegCost:
     discomfort: float
 
 
+NO_COST = LegCost(length=0.0, time=0.0, risk=0.0, charge=0.0, discomfort=0.0)
+
+
 class LegCosts:
     """Predicts legs on one ward."""
 

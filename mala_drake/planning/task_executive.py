@@ -46,6 +46,11 @@ class TaskExecutive:
         self._max_actions = max_actions
         self._max_expansions = max_expansions
         self.solve_seconds: list[float] = []
+        for name, task in tasks.items():
+            for state in task.typical_states():
+                self._planners[name].solve(
+                    state, max_expansions=max_expansions
+                )  # Grounds; replans are fast from now on.
 
     def begin(self, progress: TaskProgress, task: Task, situation: Situation) -> TaskProgress:
         """Takes up a new task, whatever was going on before."""
