@@ -49,7 +49,7 @@ class Bench:
 
 @pytest.fixture
 def make_bench() -> Callable[..., Bench]:
-    """Builds a `Bench`; `add` may put more into the plant before it is finalized, `wire` more systems after."""
+    """Builds a `Bench`; `add` may put more into the plant, `wire` more systems beside it."""
 
     def make(
         *,
@@ -62,7 +62,7 @@ def make_bench() -> Callable[..., Bench]:
         robot = AddCareRobot(plant, scene_graph, hidden_truth=hidden_truth)
         AddFloor(plant)
         if add is not None:
-            add(plant, scene_graph)
+            add(plant, scene_graph, robot)
         plant.Finalize()
         drivetrain = builder.AddNamedSystem("drivetrain", Drivetrain())
         builder.Connect(plant.get_state_output_port(robot.robot), drivetrain.GetInputPort("plant_state"))
