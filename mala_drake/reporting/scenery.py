@@ -76,9 +76,12 @@ def AddPictureRenderer(scene_graph: SceneGraph) -> None:
     lights = [
         LightParameter(type="directional", direction=direction, frame="world", intensity=intensity)
         for direction, intensity in (
-            ((0.35, 0.60, -0.75), 0.85),
-            ((-0.50, 0.30, -0.60), 0.45),
-            ((0.20, -0.60, -0.40), 0.30),
+            # The floor, which faces up, gets about 1 in all; the low ones are for upright faces.
+            ((0.35, 0.60, -0.75), 0.55),
+            ((0.15, 0.95, -0.25), 0.60),
+            ((0.95, 0.10, -0.25), 0.35),
+            ((-0.70, -0.40, -0.60), 0.35),
+            ((0.0, 0.0, -1.0), 0.12),
         )
     ]
     params = RenderEngineVtkParams(default_clear_color=_SKY_TOP, lights=lights)

@@ -54,6 +54,7 @@ def AddWard(plant: MultibodyPlant, ward: Ward | None = None, *, visible: bool = 
         BadInput: when the map names a model that does not exist or cannot have the size.
     """
     ward = LoadWard() if ward is None else ward
+    names = [model.name for model in ward_models(ward)]
     scene_graph = SceneGraph()
     furnished = MultibodyPlant(time_step=0.0)
     furnished.RegisterAsSourceForSceneGraph(scene_graph)
@@ -62,7 +63,6 @@ def AddWard(plant: MultibodyPlant, ward: Ward | None = None, *, visible: bool = 
         parser.package_map().Add("mala_drake", folder)
         ProcessModelDirectives(LoadModelDirectivesFromString(ward_directives(ward)), parser)
         furnished.Finalize()
-        names = [model.name for model in ward_models(ward)]
         return _copy(names, furnished, scene_graph.model_inspector(), plant, visible)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -33,6 +34,7 @@ __all__ = [
 PACKAGE_FOLDER = "ward"
 """Folder of the ward's models inside `package://mala_drake/`."""
 
+_NAME = re.compile(r"\w[\w .-]*")  # What can be part of a file's name and of a directive.
 _MAT_OFFSET = 1.2  # Metres.
 
 FLOOR = "floor"
@@ -76,12 +78,16 @@ def _check(piece: Furniture) -> None:
     where = f"furniture {piece.name!r}"
     if piece.model not in BUILDERS:
         raise BadInput(f"{where}: model", f"{piece.model!r}", "one of " + ", ".join(sorted(BUILDERS)))
-    if piece.height <= 0:
-        raise BadInput(f"{where}: height", f"{piece.height}", "a positive height")
     if piece.model in ROUND_MODELS and (piece.half_length or piece.half_width or not piece.radius):
         raise BadInput(where, f"model {piece.model} has half sizes", "a radius only, for it is round")
     if piece.model not in ROUND_MODELS and (piece.radius or not piece.half_length or not piece.half_width):
         raise BadInput(where, f"model {piece.model} has a radius", "half_length and half_width only")
+    if piece.height <= 0:
+        raise BadInput(f"{where}: height", f"{piece.height}", "a positive height")
+    try:
+        _furniture_parts(piece)
+    except ValueError as error:
+        raise BadInput(where, f"model {piece.model} of this size and height has {error}", "a larger one") from None
 
 
 def ward_models(ward: Ward) -> tuple[WardModel, ...]:
@@ -91,6 +97,9 @@ def ward_models(ward: Ward) -> tuple[WardModel, ...]:
         BadInput: for a model that does not exist or cannot have the size, and for two things of one name.
     """
     pieces = (*ward.walls, *ward.furniture)
+    for name in (*(place.name for place in ward.places), *(piece.name for piece in pieces)):
+        if not _NAME.fullmatch(name):
+            raise BadInput(f"ward {ward.name!r}", f"the name {name!r}", "letters, digits, spaces and the signs _ . -")
     for piece in pieces:
         _check(piece)
     models = [WardModel(FLOOR, _floor_stem(ward) + ".urdf")]

@@ -89,7 +89,7 @@ def trolley(size: Size) -> list[Part]:
         box("handle", (-length, -length + 0.03), (-width + 0.03, width - 0.03), (top - 0.04, top), palette.DARK),
     ]
     for i, (x, y) in enumerate(((-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0))):
-        post_x, post_y = x * (length - 0.04), y * (width - 0.03)
+        post_x, post_y = x * (length - 0.05), y * (width - 0.03)
         post = (0.1, top if x < 0 else 0.62 * top + 0.15)
         parts.append(
             box(f"post_{i}", (post_x - 0.015, post_x + 0.015), (post_y - 0.015, post_y + 0.015), post, palette.STEEL)

@@ -48,9 +48,16 @@ def text_of(*values: float) -> str:
     return " ".join(f"{value + 0.0:.9g}" for value in (round(v, 12) for v in values))
 
 
+def _positive(name: str, extent: float) -> float:
+    """`extent`, which has to be positive: a model's size may leave no room for one of its parts."""
+    if extent <= 0:
+        raise ValueError(f"no room for its {name.replace('_', ' ')}")
+    return extent
+
+
 def box(name: str, x: Interval, y: Interval, z: Interval, color: Color | None, *, solid: bool = False) -> Part:
     """A box given by its bounds."""
-    size = text_of(*(high - low for low, high in (x, y, z)))
+    size = text_of(*(_positive(name, high - low) for low, high in (x, y, z)))
     center = (sum(x) / 2, sum(y) / 2, sum(z) / 2)
     return Part(name, ("box", {"size": size}), center, color=color, solid=solid)
 
@@ -59,18 +66,23 @@ def cylinder(
     name: str, x: float, y: float, z: Interval, radius: float, color: Color | None, *, solid: bool = False
 ) -> Part:
     """An upright cylinder."""
-    sizes = {"radius": text_of(radius), "length": text_of(z[1] - z[0])}
+    sizes = {"radius": text_of(_positive(name, radius)), "length": text_of(_positive(name, z[1] - z[0]))}
     return Part(name, ("cylinder", sizes), (x, y, sum(z) / 2), color=color, solid=solid)
 
 
 def ellipsoid(name: str, center: Vector3, radii: Vector3, color: Color) -> Part:
     """An ellipsoid along the model's axes; only to be seen."""
-    return Part(name, ("drake:ellipsoid", dict(zip("abc", map(text_of, radii), strict=True))), center, color=color)
+    return Part(
+        name,
+        ("drake:ellipsoid", dict(zip("abc", (text_of(_positive(name, radius)) for radius in radii), strict=True))),
+        center,
+        color=color,
+    )
 
 
 def capsule(name: str, center: Vector3, rotation: Vector3, radius: float, length: float, color: Color) -> Part:
     """A capsule along its own z; `length` is that of its cylinder. Only to be seen."""
-    sizes = {"radius": text_of(radius), "length": text_of(length)}
+    sizes = {"radius": text_of(_positive(name, radius)), "length": text_of(_positive(name, length))}
     return Part(name, ("drake:capsule", sizes), center, rotation, color)
 
 

@@ -80,8 +80,8 @@ def _patient(head: float, foot: float, reach: float) -> list[Part]:
             palette.WHITE,
         ),
         ellipsoid("belly", (0, chest - 0.3, z + 0.07), (0.42, 0.55, 0.2), palette.BLANKET),
-        ellipsoid("left_leg", (-0.17, (foot + chest) / 2 - 0.15, z + 0.04), (0.17, 0.75, 0.15), palette.BLANKET),
-        ellipsoid("right_leg", (0.17, (foot + chest) / 2 - 0.15, z + 0.04), (0.17, 0.75, 0.15), palette.BLANKET),
+        ellipsoid("legs", (0, (foot + chest) / 2 - 0.12, z + 0.04), (0.36, 0.72, 0.14), palette.BLANKET),
+        ellipsoid("feet", (0, foot + 0.3, z + 0.06), (0.26, 0.13, 0.17), palette.BLANKET),
     ]
     for side, sign in (("left", -1), ("right", 1)):
         parts += [
