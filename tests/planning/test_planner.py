@@ -1,4 +1,4 @@
-"""Plans are optimal: known optima, blind search, a brute force of the test's own, and an independent validator agree."""
+"""Plans are optimal: known optima, blind search, a brute force and an independent validator agree."""
 
 import itertools
 import os
