@@ -114,8 +114,9 @@ class EpisodeWatch:
 
 
 def describe(action: Action) -> str:
-    """An action in words."""
+    """An action in words, with places spelled as on the map."""
+    place = action.place.replace("_", " ")
+    if action.kind is ActionKind.MOVE:
+        return f"drive to {place}"
     words = action.name.replace("_", " ")
-    if action.kind is ActionKind.MOVE or not action.place:
-        return words
-    return f"{words} at {action.place.replace('_', ' ')}"
+    return f"{words} at {place}" if place and "bedside" not in words else words

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -111,7 +112,16 @@ def _run_episode(
 
 
 def _make_meshcat(options: RunOptions) -> Meshcat | None:
-    return Meshcat() if options.live or options.html else None
+    """The viewer, if the run is watched or recorded; only who watches is told its address."""
+    if not (options.live or options.html):
+        return None
+    logger = logging.getLogger("drake")
+    level = logger.level
+    try:
+        logger.setLevel(level if options.live else logging.WARNING)
+        return Meshcat()
+    finally:
+        logger.setLevel(level)
 
 
 def _start_recording(scenario: Scenario, options: RunOptions, meshcat: Meshcat | None) -> RunRecording | None:

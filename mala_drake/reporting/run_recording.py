@@ -10,7 +10,7 @@ from mala_drake.reporting.recording import FinishRecording, StartRecording, ward
 from mala_drake.reporting.scenery import SetScenery, bird_eye_view
 from mala_drake.ward.ward_map import Ward
 
-_ROBOT_IN_MESHCAT = "/drake/visualizer/care_robot"
+_ROBOT_IN_MESHCAT = "/drake/visualizer/care_robot/base"
 
 
 class RunRecording:
