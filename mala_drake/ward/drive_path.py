@@ -80,6 +80,7 @@ def make_drive_path(route: Route, congestion: Congestion, *, cruise_speed: float
 
 def _round_corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Replaces each corner by an arc that leaves it by no more than `_CORNER_CUT`."""
+    points = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > 1e-9)]  # A repeated corner has no angle.
     rounded = [points[:1]]
     for before, corner, after in zip(points[:-2], points[1:-1], points[2:], strict=True):
         inward, outward = corner - before, after - corner

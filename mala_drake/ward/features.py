@@ -77,7 +77,7 @@ class FeatureRates:
 def approach_error(pose: tuple[float, float, float], ideal: tuple[float, float, float]) -> float:
     """How far a hand-over pose (x, y, yaw) is from the patient's ideal one: half by distance, half by direction.
 
-    2 m or half a turn away count as 1 each before halving; the value lies in [0, 1].
+    4 m or half a turn away count as 1 each before halving; the value lies in [0, 1].
     """
     distance = min(math.dist(pose[:2], ideal[:2]) / 4.0, 1.0)
     turn = abs(math.remainder(pose[2] - ideal[2], math.tau)) / math.pi

@@ -59,12 +59,12 @@ class _FreeSpace:
         """The free point nearest to `point`, or None when there is none close by."""
         if self.free(point):
             return point
-        near, _ = shapely.ops.nearest_points(self._solid.boundary, shapely.Point(point))
-        step = np.array([near.x, near.y]) - point
+        way_out = shapely.shortest_line(shapely.Point(point), self._solid.boundary)
+        step = shapely.get_coordinates(way_out)[1] - point
         distance = float(np.hypot(*step))
         if distance > _ESCAPE:
             return None
-        escaped = point + step * (1 + 2 * _NUDGE / max(distance, _NUDGE))
+        escaped = point + step * (1 + 2 * _NUDGE / max(distance, 1e-9))
         return escaped if self.free(escaped) else None
 
     def _visible_distances(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
