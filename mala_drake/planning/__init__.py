@@ -1,8 +1,8 @@
 """Classical planning: PDDL tasks to optimal plans, in process, exactly and the same every time."""
 
+from mala_drake.planning.from_files import solve_files
 from mala_drake.planning.plan import Plan, plan_to_json
 from mala_drake.planning.planner import Planner
-from mala_drake.planning.from_files import solve_files
 from mala_drake.planning.state import SymbolicState
 from mala_drake.planning.task import PlanningTask
 from mala_drake.planning.validation import Verdict, validate_plan

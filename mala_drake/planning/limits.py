@@ -23,11 +23,6 @@ class Budget:
         self._deadline = None if timeout is None else time.monotonic() + timeout
         self._ticks = 0
 
-    def limit_by_default(self, max_expansions: int) -> None:
-        """Sets a limit on expansions if there is no limit at all."""
-        if self._most is None and self._deadline is None:
-            self._most = max_expansions
-
     def expand(self) -> None:
         """Counts one expansion.
 

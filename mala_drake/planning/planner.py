@@ -22,7 +22,7 @@ from mala_drake.planning.task import Grounding, PlanningTask
 
 SearchName = Literal["astar", "ucs"]
 _SEARCHES = ("astar", "ucs")
-_MOST_STATES = 1_000_000  # Where all states must be visited and the caller set no limit: there may be infinitely many.
+_MOST_EXPANSIONS = 1_000_000  # Unless the caller sets a limit: with numbers there may be infinitely many states.
 
 
 class Planner:
@@ -54,13 +54,16 @@ class Planner:
             state: where to start.
             weights: values of the fluents `(w0)`, `(w1)`, ... in order, or by name.
             fluents: values of any other fluents, such as learned ones.
-            max_expansions: give up after this many expansions; the same on every machine.
+            max_expansions: give up after this many expansions; the same on every machine. A million if no limit is
+                given at all, for with numbers there may be infinitely many states.
             timeout: give up after this many seconds of wall time.
 
         Raises:
             BadInput: if the state, weights or fluents name what the task does not have.
         """
         started = time.perf_counter()
+        if max_expansions is None and timeout is None:
+            max_expansions = _MOST_EXPANSIONS
         budget = Budget(max_expansions=max_expansions, timeout=timeout)
         start = self.task.with_weights(state or self.task.initial_state, weights, fluents)
         grounded = started
@@ -112,7 +115,6 @@ class Planner:
         return best_first(model, start, heuristic=heuristic, dominated=dominated, budget=budget)
 
     def _visit_all(self, model: Model, start: State, budget: Budget) -> Solution | None:
-        budget.limit_by_default(_MOST_STATES)
         try:
             return exhaustive(model, start, budget=budget)
         except UnboundedError:

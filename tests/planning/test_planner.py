@@ -220,8 +220,8 @@ def test_infinitely_many_states_end_in_timeout_not_in_a_false_answer():
 
 
 def test_products_and_quotients_of_fluents_in_the_metric():
-    product = mut.Planner(counter_task("minimize (* (steps) (size))")).solve()
-    assert (product.status, product.cost) == ("optimal", 2)
+    product = mut.Planner(counter_task("minimize (* (+ 1 (steps)) (size))")).solve()
+    assert (product.status, product.cost) == ("optimal", 3)
     domain = """(define (domain d) (:functions (steps) (size))
       (:action step :precondition (< (steps) 5) :effect (increase (steps) 1)))"""
     problem = """(define (problem p) (:domain d) (:init (= (steps) 0) (= (size) 3)) (:goal (>= (steps) 2))

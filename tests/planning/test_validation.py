@@ -5,7 +5,8 @@ import pytest
 import mala_drake.planning.validation as mut
 from mala_drake.planning import Planner
 
-NAMES = "blocks briefcase care counters delivery depots gripper hanoi lift logistics sailing zenotravel".split()
+NAMES = ["blocks", "briefcase", "care", "counters", "delivery", "depots", "gripper", "hanoi", "lift", "logistics"]
+NAMES += ["sailing", "zenotravel"]
 
 
 @pytest.mark.parametrize("name", NAMES)
