@@ -105,7 +105,7 @@ class CareTask:
         """A state at a place and one in transit: between them they need every ground action of the task."""
         initial = self.planning_task.initial_state
         here = ("at", self._robot, self._location(initial))
-        legs = {
+        legs: dict[Name, Amount] = {
             fluent: 0 for place in self._targets for fluent in leg_fluents(NO_COST, IN_TRANSIT, location_name(place))
         }
         in_transit = initial.with_facts(add=[("at", self._robot, IN_TRANSIT)], remove=[here]).with_fluents(legs)

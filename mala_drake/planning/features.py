@@ -124,10 +124,10 @@ def fill_problem(text: str, ward: Ward, task: str, *, costs: LegCosts | None = N
     return f"{before}{begin}{heading}\n{body}    {end}{after}"
 
 
-def write_problem(path: Path, ward: Ward, task: str) -> bool:
+def write_problem(path: Path, ward: Ward, task: str, *, costs: LegCosts | None = None) -> bool:
     """Makes the generated part of a problem file anew; returns whether that changed the file."""
     before = path.read_text(encoding="utf-8")
-    after = fill_problem(before, ward, task, name=path.name)
+    after = fill_problem(before, ward, task, costs=costs, name=path.name)
     if after != before:
         path.write_text(after, encoding="utf-8")
     return after != before

@@ -55,10 +55,13 @@ class LegCosts:
         self._calibration = calibration or LegCalibration()
         self._congestion = Congestion(ward)
         self._rates = FeatureRates(ward)
+        self._known: dict[tuple[str, str], LegCost | None] = {}
 
     def between(self, start: str, goal: str) -> LegCost | None:
         """The leg between two named places of the map, or None when there is no way."""
-        return self.from_pose(_pose(self._ward.place[start]), goal)
+        if (start, goal) not in self._known:
+            self._known[start, goal] = self.from_pose(_pose(self._ward.place[start]), goal)
+        return self._known[start, goal]
 
     def from_pose(self, start: Pose, goal: str) -> LegCost | None:
         """The leg from any pose to a named place, or None when there is no way."""
