@@ -19,9 +19,9 @@ class BufferedFunction:
         self.results = tuple(_allocate(function.size_out(i)) for i in range(function.n_out()))
         self._buffer, self._evaluate = function.buffer()
         for i, array in enumerate(self.arguments):
-            self._buffer.set_arg(i, memoryview(array.reshape(-1, order="F")))
+            self._buffer.set_arg(i, array.reshape(-1, order="F").data)
         for i, array in enumerate(self.results):
-            self._buffer.set_res(i, memoryview(array.reshape(-1, order="F")))
+            self._buffer.set_res(i, array.reshape(-1, order="F").data)
 
     def __call__(self) -> None:
         """Evaluates the function on the present contents of `arguments`."""

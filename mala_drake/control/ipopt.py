@@ -19,6 +19,7 @@ class IpoptShootingSolver(MathematicalProgramSolver):
     """
 
     name = "ipopt"
+    round_length = 40
 
     def _make_solver(self) -> IpoptSolver:
         return IpoptSolver()

@@ -44,6 +44,7 @@ class ParameterLayout:
             "constraints.required_distance": (),
             "constraints.obstacle_penalty": (),
             "constraints.limit_penalty": (),
+            "constraints.reverse_braking_penalty": (),
             "constraints.obstacles": (self.slots, OBSTACLE_SIZE),
         }
 
@@ -83,7 +84,7 @@ class ParameterLayout:
         target[StateIndex.YAW] = yaw[-1]
         positions = trajectory[:, [StateIndex.X, StateIndex.Y]]
         obstacles = nearest_shapes(constraints.obstacles, positions, self.slots)
-        pieces = {
+        pieces: dict[str, Any] = {
             "terminal.target": target,
             "terminal.weights": parameters.terminal.weights,
             "stage.references": references,
@@ -97,6 +98,7 @@ class ParameterLayout:
             "constraints.required_distance": constraints.robot_radius + constraints.clearance,
             "constraints.obstacle_penalty": constraints.obstacle_penalty,
             "constraints.limit_penalty": constraints.limit_penalty,
+            "constraints.reverse_braking_penalty": constraints.reverse_braking_penalty,
             "constraints.obstacles": pack_obstacles(obstacles, self.slots),
         }
         return np.concatenate([np.ravel(pieces[name]) for name in self.shapes])

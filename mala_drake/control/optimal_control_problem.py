@@ -97,7 +97,7 @@ class OptimalControlProblem:
         states = [np.asarray(initial_state, dtype=float)]
         dynamics = parameters.dynamics.vector
         for control in np.asarray(controls, dtype=float):
-            states.append(np.asarray(self.step(states[-1], control, dynamics)).ravel())
+            states.append(self.step(states[-1], control, dynamics).full()[:, 0])
         return np.array(states)
 
     def pack(self, initial_state: Vector, parameters: MpcParameters) -> Vector:

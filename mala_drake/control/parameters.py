@@ -43,7 +43,7 @@ def _frozen_array(where: str, value: ArrayLike, shape: tuple[int | None, ...]) -
     return array
 
 
-def _require(where: str, good: bool, value: Any, expected: str) -> None:
+def _require(where: str, good: bool | np.bool, value: Any, expected: str) -> None:
     if not good:
         raise BadInput(where, str(value), expected)
 
@@ -124,7 +124,8 @@ class ConstraintParameters(_Arrays):
     yaw_rate_limit: float = 2.0  # rad/s.
     lateral_limit: float = 2.0  # Largest |v_x omega|, m/s^2.
     obstacle_penalty: float = 1e4  # Cost per metre of lost clearance.
-    limit_penalty: float = 1e3  # Cost per m/s, rad/s or m/s^2 beyond a path limit, and per unit of brake in reverse.
+    limit_penalty: float = 1e4  # Cost per m/s, rad/s or m/s^2 beyond a path limit.
+    reverse_braking_penalty: float = 1e3  # Cost per m/s^2 of brake and m/s of backward speed.
 
     def __post_init__(self) -> None:
         limits = self._freeze("speed_limits", (None,))
@@ -135,6 +136,9 @@ class ConstraintParameters(_Arrays):
             value = getattr(self, item.name)
             good = np.isfinite(value) and value >= 0
             _require(f"ConstraintParameters.{item.name}", good, value, "a finite non-negative number")
+        for s in self.obstacles:
+            finite = np.isfinite((s.x, s.y, s.yaw, s.half_length, s.half_width, s.radius)).all()
+            _require(f"obstacle {s.name!r}", finite, s, "finite sizes and places")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -71,7 +71,7 @@ def build_expressions(layout: ParameterLayout, period: float) -> ShootingExpress
         _tracking_cost(columns, controls, pieces)
         + obstacle_penalty * _penalty(to_obstacles, OBSTACLE_BUFFER)
         + limit_penalty * _penalty(to_limits, LIMIT_BUFFER)
-        + limit_penalty * _reverse_braking(reached, controls)
+        + pieces["constraints.reverse_braking_penalty"] * _reverse_braking(reached, controls)
     )
     return ShootingExpressions(
         controls=controls,

@@ -15,6 +15,7 @@ class SnoptShootingSolver(MathematicalProgramSolver):
     """`MathematicalProgramSolver` with SNOPT (Gill, Murray, Saunders, SIAM Review 47, 2005)."""
 
     name = "snopt"
+    round_length = 200
 
     def _make_solver(self) -> SnoptSolver:
         return SnoptSolver()

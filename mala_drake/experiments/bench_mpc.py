@@ -103,7 +103,7 @@ def drive_course(problem: OptimalControlProblem, solver: Solver, *, steps: int, 
         run.cost += _stage_cost(state, solution.controls[0], parameters.stage)
         warm_start = solution.shifted()
         next_state = problem.step(state, solution.controls[0], parameters.dynamics.vector)
-        state = np.asarray(next_state).ravel() + _NOISE * generator.standard_normal(len(_NOISE))
+        state = next_state.full()[:, 0] + _NOISE * generator.standard_normal(len(_NOISE))
         run.states.append(state)
         run.min_clearance = min(run.min_clearance, float(distances(state[:2]).min()) - BODY_RADIUS)
     return run
