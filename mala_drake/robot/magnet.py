@@ -32,8 +32,9 @@ class _Clamps:
     """A `ClampedItems` message as arrays."""
 
     places: tuple[Place, ...]
+    forces: tuple[slice, ...]  # Where in the generalized forces theirs are.
     state_indices: NDArray[np.intp]  # (k, 13) into the plant's state: pose, then velocity of each box.
-    velocity_indices: NDArray[np.intp]  # (k, 6) into the plant's velocities.
+    weights: NDArray[np.intp]  # (k,) into the generalized forces: what pulls each box up.
     resting: NDArray[np.float64]  # (k, 13): where they belong, at rest.
 
 
@@ -80,20 +81,24 @@ class Magnet(LeafSystem):
         super().__init__()
         self._pad = pad if pad is not None else MagnetLaw()
         self._clamp = clamp if clamp is not None else MagnetLaw(reach=CLAMP_REACH, either_way_round=False)
-        self._state_indices = {
-            name: _state_indices(plant, body) for name, body in zip(items.names, items.bodies, strict=True)
-        }
+        self._items = {name: _floating(plant, body) for name, body in zip(items.names, items.bodies, strict=True)}
         self._num_velocities = plant.num_velocities()
-        self._num_positions = plant.num_positions()
-        self._base = _state_indices(plant, robot.base)
+        self._base = _floating(plant, robot.base)
         joints = [plant.GetJointByName(name, robot.arm) for name in ARM_JOINTS]
-        self._joint_positions = np.array([joint.position_start() for joint in joints])
-        self._joint_velocities = np.array([joint.velocity_start() for joint in joints])
+        self._joint_positions = [joint.position_start() for joint in joints]
+        self._joint_velocities = [joint.velocity_start() for joint in joints]
+        self._joint_rates = [plant.num_positions() + start for start in self._joint_velocities]
         self._clamps = (ClampedItems(), self._make_clamps(ClampedItems()))
         self._magnet_port = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._clamped_port = self.DeclareAbstractInputPort("clamped", Value(ClampedItems()))
         self._state_port = self.DeclareVectorInputPort("state", plant.num_multibody_states())
-        self.DeclareVectorOutputPort("generalized_force", self._num_velocities, self._calc_generalized_force)
+        ports = (self._magnet_port, self._clamped_port, self._state_port)
+        self.DeclareVectorOutputPort(
+            "generalized_force",
+            self._num_velocities,
+            self._calc_generalized_force,
+            prerequisites_of_calc={port.ticket() for port in ports},
+        )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         state = self._state_port.Eval(context)
@@ -113,55 +118,73 @@ class Magnet(LeafSystem):
         return self._clamps[1]
 
     def _make_clamps(self, message: ClampedItems) -> _Clamps:
-        indices = np.array([self._indices(name) for name, _ in message.items], dtype=np.intp).reshape(-1, 13)
-        resting = np.zeros(indices.shape)
+        boxes = [self._item(name) for name, _ in message.items]
+        state_indices = np.array([box.state_indices() for box in boxes], dtype=np.intp).reshape(-1, 13)
+        resting = np.zeros(state_indices.shape)
         for row, (_, pose) in zip(resting, message.items, strict=True):
             row[:7] = math.cos(0.5 * pose.yaw), 0.0, 0.0, math.sin(0.5 * pose.yaw), pose.x, pose.y, pose.z
         places = tuple(Place((pose.x, pose.y, pose.z), pose.yaw) for _, pose in message.items)
-        return _Clamps(places, indices, indices[:, 7:] - self._num_positions, resting)
+        weights = np.array([box.force.stop - 1 for box in boxes], dtype=np.intp)
+        return _Clamps(places, tuple(box.force for box in boxes), state_indices, weights, resting)
 
     def _hold_clamped(self, state: NDArray[np.float64], clamps: _Clamps, generalized: NDArray[np.float64]) -> None:
         boxes = state[clamps.state_indices]
-        generalized[clamps.velocity_indices[:, -1]] = ITEM_MASS * GRAVITY
+        generalized[clamps.weights] = ITEM_MASS * GRAVITY
         deviations = np.abs(boxes - clamps.resting)
         if deviations.size == 0 or deviations.max() < _AT_REST:
             return  # As nearly always: every box stands still in its place and only its weight has to be carried.
         for row in np.flatnonzero(~(deviations.max(axis=1) < _AT_REST)):
             torque, force = self._clamp.wrench(boxes[row].tolist(), clamps.places[row])
-            generalized[clamps.velocity_indices[row]] = (*torque, *force)
+            generalized[clamps.forces[row]] = (*torque, *force)
 
     def _gripper_motion(self, state: NDArray[np.float64]) -> GripperMotion:
-        rates = state[self._num_positions + self._joint_velocities]
-        return gripper_motion(state[self._base].tolist(), state[self._joint_positions].tolist(), rates.tolist())
+        angles, rates = state[self._joint_positions].tolist(), state[self._joint_rates].tolist()
+        return gripper_motion(self._base.state(state), angles, rates)
 
     def _hold_at_pad(
         self, state: NDArray[np.float64], motion: GripperMotion, item: str, pad: int, generalized: NDArray[np.float64]
     ) -> None:
-        indices = self._indices(item)
-        box = state[indices].tolist()
+        floating = self._item(item)
+        box = floating.state(state)
         middle = motion.pad_position(pad)
         hanging = (middle[0], middle[1], middle[2] - PAD_RADIUS - ITEM_HALF_HEIGHT)
         place = Place(hanging, motion.yaw, motion.velocity_at(middle), motion.yaw_rate)
         torque, force = self._pad.wrench(box, place)
-        generalized[indices[7:] - self._num_positions] = (*torque, *force)
+        generalized[floating.force] = (*torque, *force)
         reaction = ((-torque[0], -torque[1], -torque[2]), (-force[0], -force[1], -force[2]))
         base, joints = motion.generalized_force((box[4], box[5], box[6]), *reaction)
-        generalized[self._base[7:] - self._num_positions] += base
+        generalized[self._base.force] += base
         generalized[self._joint_velocities] += joints
 
-    def _indices(self, item: str) -> NDArray[np.intp]:
-        """Where in the plant's state the box `item` is.
+    def _item(self, name: str) -> _Floating:
+        """The box `name` in the plant's vectors.
 
         Raises:
             ValueError: there is no such box.
         """
-        if item not in self._state_indices:
-            raise ValueError(f"the magnet is to hold {item!r}, but there is no such item")
-        return self._state_indices[item]
+        if name not in self._items:
+            raise ValueError(f"the magnet is to hold {name!r}, but there is no such item")
+        return self._items[name]
 
 
-def _state_indices(plant: MultibodyPlant, body: RigidBody) -> NDArray[np.intp]:
-    """Where in the plant's state the pose (7) and the velocity (6) of a floating body are."""
-    positions = body.floating_positions_start() + np.arange(7)
-    velocities = plant.num_positions() + body.floating_velocities_start_in_v() + np.arange(6)
-    return np.concatenate((positions, velocities))
+@dataclass(frozen=True, slots=True)
+class _Floating:
+    """Where a floating body is in the plant's vectors."""
+
+    pose: slice  # Seven numbers of the plant's state.
+    velocity: slice  # Six numbers of the plant's state.
+    force: slice  # Six numbers of the plant's velocities.
+
+    def state(self, state: NDArray[np.float64]) -> list[float]:
+        """Pose and velocity, 13 numbers."""
+        return [*state[self.pose].tolist(), *state[self.velocity].tolist()]
+
+    def state_indices(self) -> list[int]:
+        """The 13 places of `state`."""
+        return [*range(self.pose.start, self.pose.stop), *range(self.velocity.start, self.velocity.stop)]
+
+
+def _floating(plant: MultibodyPlant, body: RigidBody) -> _Floating:
+    position, velocity = body.floating_positions_start(), body.floating_velocities_start_in_v()
+    after = plant.num_positions() + velocity
+    return _Floating(slice(position, position + 7), slice(after, after + 6), slice(velocity, velocity + 6))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,7 +100,8 @@ def X_WB_at(x: float, y: float, yaw: float) -> RigidTransform:
 def SetRobotPose(
     plant: MultibodyPlant, plant_context: Context, robot: CareRobot, *, x: float, y: float, yaw: float
 ) -> None:
-    """Puts the robot, at rest, to a place on the floor."""
-    plant.SetFreeBodyPose(plant_context, robot.base, X_WB_at(x, y, yaw))
+    """Puts the robot, at rest, to a place on the floor: metres, and radians for its heading."""
+    pose = [math.cos(0.5 * yaw), 0.0, 0.0, math.sin(0.5 * yaw), x, y, 0.0]
+    plant.SetPositions(plant_context, robot.robot, [*pose, 0.0, 0.0])
     plant.SetVelocities(plant_context, robot.robot, np.zeros(plant.num_velocities(robot.robot)))
     plant.SetVelocities(plant_context, robot.arm, np.zeros(plant.num_velocities(robot.arm)))
