@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mala_drake.planning.model import Model
+from mala_drake.planning.numbers import Number
 from mala_drake.planning.operators import Effect, Operator, OperatorTask, Update
 from mala_drake.planning.polynomial import FLUENT, INVERSE, Polynomial, constant, evaluate, variable
 from mala_drake.planning.syntax import Fact
@@ -54,7 +55,7 @@ def never_gains(model: Model, values: Mapping[Fact, Fraction]) -> bool:
     """
     task = model.task
     if model.numbers.is_stepwise:
-        return all(_constant_step_cost(model, operator) >= 0 for operator in task.operators)
+        return all(_constant_step_cost(model, *costs) >= 0 for costs in task.step_costs)
     rest = constant(0) if task.rest is None else _fill_in(task.polynomials[task.rest], values)
     if rest is None or any(kind == INVERSE for kind, _ in rest.atoms()) or not rest.fluents() <= values.keys():
         return False
@@ -62,13 +63,10 @@ def never_gains(model: Model, values: Mapping[Fact, Fraction]) -> bool:
     return all(_changes_upward(task, operator, rest, ranges, values) for operator in task.operators)
 
 
-def _constant_step_cost(model: Model, operator: Operator) -> Fraction | int:
-    total: Fraction | int = 0
-    if operator.always.cost is not None:
-        total += model.numbers.constant(operator.always.cost) or 0
-    for effect in operator.sometimes:
-        if effect.cost is not None:
-            total += min(model.numbers.constant(effect.cost) or 0, 0)
+def _constant_step_cost(model: Model, always: int | None, sometimes: tuple[int, ...]) -> Number:
+    total: Number = 0 if always is None else model.numbers.constant(always) or 0
+    for cost in sometimes:
+        total += min(model.numbers.constant(cost) or 0, 0)
     return total
 
 

@@ -128,7 +128,7 @@ class Numbers:
 
     def value(self, polynomial: int, values: Values) -> Number | None:
         """The polynomial's value, None if undefined."""
-        compiled = self._compile(polynomial)
+        compiled = self._filled[polynomial] if polynomial in self._filled else self._compile(polynomial)
         if compiled is None:
             return None
         total, terms = compiled
@@ -165,7 +165,7 @@ class Numbers:
 
     def constant(self, polynomial: int) -> Number | None:
         """The value of a polynomial that reads no changing fluent; None if it reads one or is undefined."""
-        compiled = self._compile(polynomial)
+        compiled = self._filled[polynomial] if polynomial in self._filled else self._compile(polynomial)
         return None if compiled is None or compiled[1] else compiled[0]
 
     def linear(self, polynomial: int) -> tuple[Number, dict[int, Number]] | None:

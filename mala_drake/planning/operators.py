@@ -76,7 +76,8 @@ class OperatorTask:
     """A ground task as operators, with the tables that lead back to names.
 
     `facts` are the bits, lowest first, and only such facts as some condition reads; `fluents` the numeric fluents that
-    stay in the state; `polynomials` every expression; `rest` the part of the cost that is a function of the state.
+    stay in the state; `polynomials` every expression; `rest` the part of the cost that is a function of the state;
+    `step_costs` the different costs of operators, as the polynomial that always counts and those that may.
     """
 
     operators: tuple[Operator, ...]
@@ -85,11 +86,17 @@ class OperatorTask:
     fluents: Mapping[Fact, int]
     polynomials: tuple[Polynomial, ...]
     rest: int | None
+    step_costs: tuple[tuple[int | None, tuple[int, ...]], ...] = ()
     _candidates: dict[int, tuple[Operator, ...]] = field(default_factory=dict)
     _buckets: list[tuple[int, tuple[Operator, ...]]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._buckets = _bucket(self.operators)
+        costs = (
+            (each.always.cost, tuple(effect.cost for effect in each.sometimes if effect.cost is not None))
+            for each in self.operators
+        )
+        self.step_costs = tuple(dict.fromkeys(costs))
 
     def candidates(self, mask: int) -> tuple[Operator, ...]:
         """The operators whose precondition's masks fit the facts `mask`, by name."""

@@ -99,26 +99,42 @@ class ProjectionHeuristic:
     """
 
     def __init__(self, graph: FactGraph, model: Model) -> None:
-        costs = [_lower_bound(step, model) for step in graph.steps]
-        distances: list[Number | None] = [None] * len(graph.nodes)
-        queue: list[tuple[Number, int]] = [(0, node) for node in graph.goals]
-        for node in graph.goals:
-            distances[node] = 0
-        while queue:
-            distance, node = heapq.heappop(queue)
-            if distance != distances[node]:
-                continue
-            for before, step in graph.incoming[node]:
-                cost, known = costs[step], distances[before]
-                if cost is not None and (known is None or distance + cost < known):
-                    distances[before] = distance + cost
-                    heapq.heappush(queue, (distance + cost, before))
-        self._nodes = graph.nodes
-        self._distances = distances
+        self._graph = graph
+        self._model = model
+        self._steps = tuple(graph.steps)
+        self._costs: dict[int, Number | None] = {}
+        self._distances: dict[int, Number] = dict.fromkeys(graph.goals, 0)
+        self._settled: set[int] = set()
+        self._queue: list[tuple[Number, int]] = [(0, node) for node in graph.goals]
 
     def __call__(self, state: State) -> Number | None:
-        """The bound in a state, None if no way to the goal is left."""
-        return self._distances[self._nodes[state[0]]]
+        """The bound in a state, None if no way to the goal is left.
+
+        Dijkstra's search goes backward from the goal just as far as it has been asked: towards the end of a task most
+        of the graph is farther from the goal than the robot.
+        """
+        node = self._graph.nodes[state[0]]
+        if node not in self._settled:
+            self._settle(node)
+        return self._distances[node] if node in self._settled else None
+
+    def _settle(self, wanted: int) -> None:
+        distances, costs, settled, queue = self._distances, self._costs, self._settled, self._queue
+        while queue and wanted not in settled:
+            distance, node = heapq.heappop(queue)
+            if node in settled:
+                continue
+            settled.add(node)
+            for before, step in self._graph.incoming[node]:
+                if step not in costs:
+                    costs[step] = _lower_bound(self._steps[step], self._model)
+                cost = costs[step]
+                if cost is None or before in settled:
+                    continue
+                known = distances.get(before)
+                if known is None or distance + cost < known:
+                    distances[before] = distance + cost
+                    heapq.heappush(queue, (distance + cost, before))
 
 
 def _lower_bound(step: _Step, model: Model) -> Number | None:

@@ -176,6 +176,6 @@
       (when (< (battery-soc ?r) 0.25) (increase (stage_cost) (* (w2) 0.2)))))
   (:action recharge
     :parameters (?r - robot ?l - dock)
-    :precondition (and (at ?r ?l) (< (battery-soc ?r) 1.0))
+    :precondition (at ?r ?l)
     :effect (and (assign (battery-soc ?r) 1.0) (increase (total_time) 0.5) (increase (discrete_steps) 1)
       (increase (stage_cost) (* (w0) 0.5)))))
