@@ -108,6 +108,8 @@ class World(LeafSystem):
         self._tables = {
             name: piece for name, piece in ward.furniture_of.items() if ward.place[name].category == "bedside"
         }
+        # One message for each stock that there ever was: the magnet works on it at the plant's rate, by identity.
+        self._clamped: dict[tuple[str, ...], ClampedItems] = {}
         self._declare_ports()
 
     def _declare_ports(self) -> None:
@@ -142,7 +144,9 @@ class World(LeafSystem):
 
     def _calc_clamped(self, context: Context, output: Value) -> None:
         stock = self._current(context).stock
-        output.set_value(ClampedItems(tuple((name, self._item_by_name[name].shelf_pose) for name in stock)))
+        if stock not in self._clamped:
+            self._clamped[stock] = ClampedItems(tuple((name, self._item_by_name[name].shelf_pose) for name in stock))
+        output.set_value(self._clamped[stock])
 
     def _update(self, context: Context, state: State) -> None:
         before = self._current(context)
