@@ -1,0 +1,223 @@
+import math
+
+import numpy as np
+import pytest
+from pydrake.common.value import Value
+from pydrake.systems.analysis import Simulator
+
+import mala_drake.robot.feature_meter as mut
+from mala_drake.clock import METER_OFFSET, TICK
+from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.ward.congestion import Congestion
+from mala_drake.ward.drive_path import make_drive_path
+from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, FeatureRates, FeatureScales, approach_error
+from mala_drake.ward.legs import leg_planner
+from mala_drake.ward.ward_map import LoadWard
+
+
+@pytest.fixture(scope="module")
+def ward():
+    return LoadWard()
+
+
+class Stage:
+    """A meter whose inputs are in the test's hands, at the beginning of task 1."""
+
+    def __init__(self, ward, *, start=(0.0, 0.0, 0.0), charge=1.0, **options):
+        self.meter = mut.FeatureMeter(ward, **options)
+        self.simulator = Simulator(self.meter)
+        self.context = self.simulator.get_mutable_context()
+        self.task = self._fix("task", Value(Task(1, "medication")))
+        self.report = self._fix("task_report", Value(TaskReport()))
+        self.action = self._fix("action", Value(Action()))
+        self.robot_state = self._fix("robot_state", [*start, 0.0, 0.0, 0.0])
+        self.charge = self._fix("charge", [charge])
+        self.simulator.AdvanceTo(TICK / 2)
+
+    def _fix(self, name, value):
+        return self.meter.GetInputPort(name).FixValue(self.context, value)
+
+    def output(self, name):
+        return self.meter.GetOutputPort(name).Eval(self.context)
+
+    def tick(self, *, pose=None, charge=None, action=None):
+        if pose is not None:
+            self.robot_state.GetMutableData().get_mutable_value().SetFromVector([*pose, 0.0, 0.0, 0.0])
+        if charge is not None:
+            self.charge.GetMutableData().get_mutable_value().SetFromVector([charge])
+        if action is not None:
+            self.action.GetMutableData().set_value(Action(1, ActionKind.IN_PLACE, action))
+        self.simulator.AdvanceTo(self.context.get_time() + TICK)
+
+    def finish(self, **report):
+        self.report.GetMutableData().set_value(TaskReport(1, finished=True, **report))
+        self.tick()
+        return self.output("episode_report")
+
+    def measured(self):
+        """The unscaled sums of the finished task, by name."""
+        return dict(self.finish(success=True).details)
+
+
+def drive(stage, path):
+    """Moves the robot along a drive path in its own time, sampled once a tick."""
+    for time in np.arange(TICK, path.duration + TICK, TICK):
+        length = np.interp(time, path.times, path.lengths)
+        x, y = (np.interp(length, path.lengths, path.points[:, i]) for i in (0, 1))
+        stage.tick(pose=(x, y, np.interp(length, path.lengths, path.headings)))
+
+
+def test_drawn_ports_are_the_real_ports(ward, assert_port_box):
+    assert_port_box(mut.FeatureMeter(ward))
+
+
+@pytest.mark.parametrize(
+    ("start", "goal"),
+    [("home", "pharmacy_north"), ("pharmacy_north", "supply_A"), ("supply_A", "patient_bed_left"), ("stove", "fridge")],
+)
+def test_measured_risk_and_discomfort_are_the_integrals_along_the_path(ward, start, goal):
+    congestion, rates = Congestion(ward), FeatureRates(ward)
+    path = make_drive_path(leg_planner(ward).between(start, goal), congestion)
+    stage = Stage(ward, start=(*path.points[0], path.headings[0]))
+    drive(stage, path)
+    measured = stage.measured()
+    assert measured["risk"] == pytest.approx(congestion.risk(path.points), rel=0.01)
+    middles = 0.5 * (path.points[1:] + path.points[:-1])
+    speeds = np.diff(path.lengths) / np.diff(path.times)
+    discomfort = rates.discomfort_rate(middles, speeds) @ np.diff(path.times)
+    assert measured["discomfort"] == pytest.approx(discomfort, rel=0.02, abs=0.05)
+    assert measured["duration"] == pytest.approx(path.duration, abs=2 * TICK)
+
+
+def test_standing_near_the_patient_is_felt_and_standing_elsewhere_is_not(ward):
+    bedside = ward.place["patient_bed_left"]
+    rate = FeatureRates(ward).discomfort_rate((bedside.x, bedside.y), 0.0)
+    for place, expected in ((bedside, 2.0 * rate), (ward.place["home"], 0.0)):
+        stage = Stage(ward, start=(place.x, place.y, 0.0))
+        for _ in range(9):
+            stage.tick()
+        measured = stage.measured()
+        assert measured["discomfort"] == pytest.approx(expected)
+        assert measured["risk"] == 0.0
+        assert measured["duration"] == pytest.approx(2.0)
+
+
+def test_charge_given_back_is_no_negative_use(ward):
+    stage = Stage(ward, charge=0.5)
+    for charge in (0.4, 0.9, 1.0, 0.95):
+        stage.tick(charge=charge)
+    assert stage.measured()["charge_used"] == pytest.approx(0.15)
+    report = stage.output("episode_report")
+    assert (report.battery_start, report.battery_end) == pytest.approx((0.5, 0.95))
+
+
+def test_the_approach_is_judged_where_things_are_handed_over(ward):
+    stage = Stage(ward)
+    stage.tick(pose=(0.2, 0.0, 0.0), action="check_medication_correct")
+    stage.tick(pose=(0.3, 0.1, 0.4), action="deliver_on_bedside_table_left")
+    stage.tick(pose=(0.5, 0.1, 0.5), action="recharge")
+    assert stage.measured()["approach_error"] == pytest.approx(approach_error((0.3, 0.1, 0.4), IDEAL_HAND_OVER))
+
+
+def test_without_a_hand_over_the_approach_is_the_worst(ward):
+    stage = Stage(ward)
+    stage.tick()
+    assert stage.measured()["approach_error"] == 1.0
+
+
+def test_another_ideal_can_be_wanted(ward):
+    stage = Stage(ward, ideal=(0.0, 0.0, 0.0))
+    stage.tick(action="deliver_on_bedside_table_right")
+    assert stage.measured()["approach_error"] == 0.0
+
+
+def test_features_are_the_sums_by_their_scales_and_never_above_one(ward):
+    scales = {"medication": FeatureScales(time=10.0, battery=0.01, approach=1.25)}
+    stage = Stage(ward, scales=scales)
+    stage.tick(charge=0.5)
+    assert stage.output("features") == pytest.approx([TICK / 10.0, 0.0, 1.0, 0.0, 1.0 / 1.25])
+    assert stage.finish(success=True).features == pytest.approx([2 * TICK / 10.0, 0.0, 1.0, 0.0, 1.0 / 1.25])
+
+
+def test_tasks_are_measured_by_their_own_scales(ward):
+    other = {"meal": FeatureScales(time=1.0)}
+    stage = Stage(ward, scales=other)
+    stage.tick()
+    assert stage.output("features")[0] == pytest.approx(TICK / FEATURE_SCALES["medication"].time)
+
+
+def test_the_report_carries_what_the_planner_said(ward):
+    stage = Stage(ward)
+    assert stage.output("episode_report") == EpisodeReport()
+    report = stage.finish(
+        success=False,
+        failure="no way",
+        actions=("(recharge robot1)",),
+        plan_cost=1.5,
+        predicted_features=(0.1, 0.2, 0.3, 0.4, 0.5),
+        replans=3,
+        mismatches=2,
+    )
+    assert (report.sequence, report.task, report.success, report.failure) == (1, "medication", False, "no way")
+    assert (report.actions, report.plan_cost, report.replans, report.mismatches) == (("(recharge robot1)",), 1.5, 3, 2)
+    assert report.predicted_features == (0.1, 0.2, 0.3, 0.4, 0.5)
+
+
+def test_a_finished_task_is_measured_no_further(ward):
+    stage = Stage(ward)
+    report = stage.finish(success=True)
+    for _ in range(5):
+        stage.tick(pose=(1.0, 1.0, 0.0), charge=0.1)
+    assert stage.output("episode_report") == report
+
+
+def test_the_next_task_is_measured_from_its_own_beginning(ward):
+    stage = Stage(ward)
+    stage.tick(pose=(0.4, 0.0, 0.0), charge=0.7)
+    stage.finish(success=True)
+    stage.task.GetMutableData().set_value(Task(2, "medication", 1))
+    stage.tick()
+    assert stage.output("episode_report") == EpisodeReport()
+    stage.tick()
+    assert stage.output("features")[:4] == pytest.approx([TICK / FEATURE_SCALES["medication"].time, 0.0, 0.0, 0.0])
+
+
+def test_the_report_is_there_in_the_tick_in_which_the_task_is_finished(ward):
+    stage = Stage(ward)
+    stage.report.GetMutableData().set_value(TaskReport(1, finished=True, success=True))
+    stage.simulator.AdvanceTo(TICK + METER_OFFSET + 1e-4)
+    assert stage.output("episode_report").sequence == 1
+
+
+def test_an_old_report_does_not_close_a_new_task(ward):
+    stage = Stage(ward)
+    stage.task.GetMutableData().set_value(Task(2, "medication", 1))
+    stage.tick()
+    stage.finish(success=True)
+    assert stage.output("episode_report") == EpisodeReport()
+
+
+def test_before_any_task_nothing_is_measured(ward):
+    stage = Stage(ward)
+    stage.task.GetMutableData().set_value(Task())
+    for _ in range(3):
+        stage.tick()
+    assert stage.output("features")[:4] == pytest.approx(np.zeros(4))
+    assert stage.output("episode_report") == EpisodeReport()
+
+
+def test_a_robot_that_is_carried_away_collects_no_risk_by_it(ward):
+    stage = Stage(ward, start=(0.0, 0.0, 0.0))
+    stage.tick(pose=(5.0, 18.0, 0.0))
+    assert stage.measured()["risk"] == 0.0
+
+
+def test_a_state_that_is_not_finite_adds_time_but_no_driving(ward):
+    stage = Stage(ward)
+    stage.tick(pose=(math.nan, 0.0, 0.0), charge=math.nan)
+    stage.tick(pose=(0.2, 0.0, 0.0), charge=0.9)
+    measured = stage.measured()
+    assert all(math.isfinite(value) for value in measured.values())
+    assert measured["risk"] == pytest.approx(Congestion(ward).risk([[0.0, 0.0], [0.2, 0.0]]))
+    assert measured["charge_used"] == pytest.approx(0.1)
+    assert measured["duration"] == pytest.approx(3 * TICK)
