@@ -34,6 +34,7 @@ class HardClearance:
         self._nearest = np.zeros(problem.horizon, dtype=int)
         self._slots = problem.layout.slots
         self._origin, self._transform = np.zeros(len(variables)), np.eye(len(variables))
+        self.failure: Exception | None = None
         free = np.full(problem.horizon, -np.inf)
         self._binding = program.AddConstraint(self._evaluate, free, -free, variables)
 
@@ -47,6 +48,7 @@ class HardClearance:
             transform: T, shape (3 N, 3 N).
             margins: obstacle margins along U_0, shape (N, M).
         """
+        self.failure = None
         self._nearest = margins.argmin(axis=1)
         selection = np.zeros_like(margins)
         selection[self._stages, self._nearest] = 1.0
@@ -64,15 +66,21 @@ class HardClearance:
         return duals
 
     def _evaluate(self, variables: NDArray[Any]) -> NDArray[Any]:
-        """The margins with their Jacobian with respect to w; the argument's derivatives are the identity."""
-        if variables.dtype == float:
-            self._point[:] = self._origin + self._transform @ variables
+        """The margins, with their Jacobian with respect to w where asked for; see `ShootingProgram._evaluate`."""
+        plain = variables.dtype == float
+        margins, jacobian = np.zeros((len(self._stages), 1)), np.zeros((len(self._stages), len(variables)))
+        try:
+            offset = variables if plain else np.fromiter(map(_value, variables), float, len(variables))
+            self._point[:] = self._origin + self._transform @ offset
             self._function()
-            return self._function.results[0][:, 0].copy()
-        self._point[:] = self._origin + self._transform @ np.fromiter(map(_value, variables), float, len(variables))
-        self._function()
-        margins, jacobian = self._function.results
-        return InitializeAutoDiff(margins, jacobian @ self._transform)[:, 0]
+            values, slopes = self._function.results
+            if np.isfinite(values).all() and np.isfinite(slopes).all():
+                margins, jacobian = values.copy(), slopes @ self._transform
+            else:
+                self.failure = ArithmeticError("a margin or its gradient is not finite")
+        except Exception as error:
+            self.failure = error
+        return margins[:, 0] if plain else InitializeAutoDiff(margins, jacobian)[:, 0]
 
 
 def _selected_margins(problem: OptimalControlProblem) -> casadi.Function:

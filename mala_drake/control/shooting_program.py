@@ -54,8 +54,13 @@ class ShootingProgram:
         self._program.AddCost(self._evaluate, self._variables)
         self._box = self._program.AddLinearConstraint(np.eye(size), np.zeros(size), np.zeros(size), self._variables)
         self._clearance = HardClearance(problem, self._program, self._variables) if hard_clearance else None
-        self.failure: Exception | None = None
+        self._failure: Exception | None = None
         self.evaluations = 0
+
+    @property
+    def failure(self) -> Exception | None:
+        """What went wrong in a callback of the last run, if anything did."""
+        return self._failure or (self._clearance.failure if self._clearance is not None else None)
 
     def set_parameters(self, initial_state: Vector, packed: Vector) -> None:
         """Chooses z_0, shape (6,), and p for the evaluations to come."""
@@ -90,9 +95,9 @@ class ShootingProgram:
             inputs: p^a.
             margins: obstacle margins along `origin`, shape (N, M).
         """
-        self.failure, self.evaluations, self._scale = None, 0, scale
+        self._failure, self.evaluations, self._scale = None, 0, scale
         self._origin = origin.ravel().copy()
-        self._transform = np.linalg.inv(np.linalg.cholesky(scale * hessian)).T.copy()
+        self._transform = _whitening(scale * hessian)
         lower, upper = (np.tile(bound, self._horizon) - self._origin for bound in (inputs.lower, inputs.upper))
         self._box.evaluator().UpdateCoefficients(self._transform, lower, upper)
         if self._clearance is not None:
@@ -122,7 +127,19 @@ class ShootingProgram:
             gradient = (self._gradient * self._scale) @ self._transform
             if np.isfinite(cost) and np.isfinite(gradient).all():
                 return AutoDiffXd(cost, gradient)
-            self.failure = ArithmeticError("cost or gradient is not finite")
+            self._failure = ArithmeticError("cost or gradient is not finite")
         except Exception as error:
-            self.failure = error
+            self._failure = error
         return AutoDiffXd(_UNUSABLE, np.zeros(len(variables)))
+
+
+def _whitening(hessian: Vector) -> Vector:
+    """T with T' hessian T = I; the identity where the numbers overflow, so that the solve can fail in its own way.
+
+    Drake ends the process over a constraint with entries that are not finite, so none may get there.
+    """
+    try:
+        transform = np.linalg.inv(np.linalg.cholesky(hessian)).T.copy()
+    except np.linalg.LinAlgError:
+        return np.eye(len(hessian))
+    return transform if np.isfinite(transform).all() else np.eye(len(hessian))

@@ -1,6 +1,6 @@
 import numpy as np
 
-from mala_drake.control import MakeSolver
+from mala_drake.control import MakeSolver, Status
 from mala_drake.messages import Shape
 
 WALL = Shape("wall", 2.0, 0.0, 0.0, 0.2, 3.0)
@@ -38,3 +38,16 @@ def test_where_the_penalty_suffices_the_solution_is_the_same(problem, parameters
     assert soft.obstacle_duals.max() > 100.0
     np.testing.assert_allclose(hard.controls, soft.controls, atol=1e-3)
     np.testing.assert_allclose(hard.obstacle_duals, soft.obstacle_duals, atol=2.0)
+
+
+def test_a_constraint_that_fails_is_reported(problem, parameters_toward, monkeypatch):
+    solver = MakeSolver("snopt", problem, hard_clearance=True)
+    parameters = parameters_toward((1.0,), obstacles=(WALL,))
+
+    def fail():
+        raise RuntimeError("broken on purpose")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(solver._program._clearance._function, "_evaluate", fail)
+        assert solver.solve(START, parameters).status is Status.NUMERICAL
+    assert solver.solve(START, parameters).success

@@ -201,6 +201,14 @@ def test_a_state_that_is_not_finite_is_answered_not_raised(solver, parameters_to
     assert solver.solve(START, parameters_toward((1.0,))).success
 
 
+@pytest.mark.parametrize("size", [1e80, 1e170, 1e300])
+def test_a_finite_state_that_overflows_the_model_is_answered_not_raised(solver, parameters_toward, size):
+    solution = solver.solve(START + np.array([size, 0, 0, size, 0, 0]), parameters_toward((1.0,), obstacles=(BOX,)))
+    assert not solution.success
+    assert np.isfinite(solution.controls).all()
+    assert solver.solve(START, parameters_toward((1.0,))).success
+
+
 def test_a_callback_that_fails_is_reported_and_does_not_stick(problem, parameters_toward, monkeypatch, caplog):
     fresh = MakeSolver("snopt", problem)
     parameters = parameters_toward((1.0,))
