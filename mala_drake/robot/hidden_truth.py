@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
+from mala_drake.errors import BadInput
+
 # Without this the prefix of Drake's own elements is renamed, and Drake no longer knows them.
 ElementTree.register_namespace("drake", "drake.mit.edu")
 
@@ -17,6 +19,9 @@ MASS_ERROR = 0.05
 WHEEL_RADIUS_ERRORS = {"left_wheel": 0.02, "right_wheel": -0.01}
 """Relative errors of the wheels' radii at scale 1: the robot pulls to one side."""
 
+MAX_SCALE = 10.0
+"""Up to here a wheel's radius is off by a fifth; beyond, the robot is another one."""
+
 
 def with_hidden_truth(sdf: str, scale: float) -> str:
     """The care robot's SDF text with its parameters off by `scale` times the errors above.
@@ -24,7 +29,12 @@ def with_hidden_truth(sdf: str, scale: float) -> str:
     Args:
         sdf: the text of `care_robot.sdf`.
         scale: 0 leaves the text as it is, 1 is the full error; other values in between or beyond scale it.
+
+    Raises:
+        BadInput: the scale is not finite, or so far beyond that nothing would be left of a mass or a radius.
     """
+    if not abs(scale) <= MAX_SCALE:
+        raise BadInput("hidden_truth", repr(scale), f"a number between {-MAX_SCALE:g} and {MAX_SCALE:g}")
     if scale == 0.0:
         return sdf
     root = ElementTree.fromstring(sdf)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from pydrake.geometry import Sphere
 from pydrake.systems.framework import DiagramBuilder
 
+from mala_drake.errors import BadInput
 from mala_drake.resources import models_folder
 from mala_drake.robot import hidden_truth as mut
 from mala_drake.robot.plant import AddCareRobot, MakeCarePlant
@@ -37,6 +40,12 @@ def test_mass_and_radii_are_off_by_a_few_per_cent(scale):
     assert _truth(scale) == pytest.approx(
         (mass * (1 + 0.05 * scale), left * (1 + 0.02 * scale), right * (1 - 0.01 * scale))
     )
+
+
+@pytest.mark.parametrize("scale", [math.nan, math.inf, -11.0])
+def test_refuses_a_scale_that_makes_no_robot(scale):
+    with pytest.raises(BadInput, match="hidden_truth"):
+        mut.with_hidden_truth("<sdf/>", scale)
 
 
 def test_the_rest_of_the_model_stays():
