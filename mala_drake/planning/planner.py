@@ -11,12 +11,13 @@ from mala_drake.errors import BadInput
 from mala_drake.planning.bounds import never_gains
 from mala_drake.planning.dominance import ResourceDominance
 from mala_drake.planning.exhaustive import UnboundedError, exhaustive
+from mala_drake.planning.landmark_cut import LandmarkCut
 from mala_drake.planning.limits import Budget, OutOfBudget
 from mala_drake.planning.model import Model, State
 from mala_drake.planning.plan import Plan
 from mala_drake.planning.polynomial import evaluate
 from mala_drake.planning.projection import ProjectionHeuristic
-from mala_drake.planning.search import Dominated, Heuristic, Solution, best_first, no_dominance, no_heuristic
+from mala_drake.planning.search import Dominated, Heuristic, Solution, best_first, no_dominance
 from mala_drake.planning.state import Amount, Name, SymbolicState
 from mala_drake.planning.task import Grounding, PlanningTask
 
@@ -107,9 +108,11 @@ class Planner:
 
     @staticmethod
     def _a_star(grounding: Grounding, model: Model, start: State, budget: Budget) -> Solution | None:
-        heuristic: Heuristic = no_heuristic
+        heuristic: Heuristic
         if grounding.graph.explore(start[0], budget):
             heuristic = ProjectionHeuristic(grounding.graph, model)
+        else:
+            heuristic = LandmarkCut(model)
         directions = grounding.resources.find(model, start)
         dominated: Dominated = ResourceDominance(directions, len(start[1])) if directions else no_dominance
         return best_first(model, start, heuristic=heuristic, dominated=dominated, budget=budget)
