@@ -85,7 +85,7 @@ def share_in_sight(shape, shapes, *, shrink):
     """How much of a shape's outline shapely sees from the origin past the others, made smaller by `shrink` metres."""
     ring = outline(shape).exterior
     points = [ring.interpolate(s) for s in np.linspace(0.0, ring.length, 200)]
-    near = [point for point in points if point.distance(shapely.Point(0, 0)) < REACH]
+    near = [point for point in points if point.distance(shapely.Point(0, 0)) < REACH + shrink]
     others = shapely.union_all([outline(other).buffer(-shrink) for other in shapes if other is not shape])
     return sum(not shapely.LineString([(0, 0), point]).intersects(others) for point in near) / len(points)
 

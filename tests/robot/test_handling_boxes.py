@@ -1,0 +1,212 @@
+"""World, executor, arm and magnet together on the plant: boxes are really collected, put down and delivered."""
+
+import math
+
+import pytest
+from pydrake.common.value import Value
+from pydrake.geometry import Box
+from pydrake.math import RigidTransform, RollPitchYaw
+from pydrake.multibody.plant import CoulombFriction
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+from pydrake.systems.primitives import Demultiplexer
+
+from mala_drake.messages import Action, ActionKind, Outcome, Task
+from mala_drake.robot.arm import Arm
+from mala_drake.robot.battery import Battery
+from mala_drake.robot.drivetrain import Drivetrain
+from mala_drake.robot.in_place_executor import InPlaceExecutor
+from mala_drake.robot.item_positions import ItemPositions
+from mala_drake.robot.items import AddItems
+from mala_drake.robot.magnet import Magnet
+from mala_drake.robot.plant import AddCareRobot, AddFloor, MakeCarePlant, SetRobotPose, X_WB_at
+from mala_drake.robot.state_estimator import StateEstimator
+from mala_drake.robot.world import World
+from mala_drake.ward.items import LEDGE_HEIGHT, all_items
+from mala_drake.ward.ward_map import LoadWard
+
+NORTH, SUPPLY, RIGHT = "pharmacy_north", "supply_A", "patient_bed_right"
+
+
+class Ward:
+    """The robot among the furniture it handles boxes at, set before one place after another by the test."""
+
+    def __init__(self, **options):
+        self.ward = LoadWard()
+        builder = DiagramBuilder()
+        self.plant, scene_graph = MakeCarePlant(builder)
+        self.robot = AddCareRobot(self.plant, scene_graph)
+        AddFloor(self.plant)
+        self._add_surfaces()
+        self.items = AddItems(self.plant, scene_graph, all_items(self.ward), self.robot)
+        self.plant.Finalize()
+        self._wire(builder, options)
+        self.diagram = builder.Build()
+        self.simulator = Simulator(self.diagram)
+        self.context = self.simulator.get_mutable_context()
+        self.plant_context = self.plant.GetMyMutableContextFromRoot(self.context)
+        self.diagram.GetInputPort("control").FixValue(self.context, [0.0, 2.0, 0.0])
+        self.diagram.GetInputPort("task").FixValue(self.context, Value(Task(1, "medication")))
+        self.action = self.diagram.GetInputPort("action").FixValue(self.context, Value(Action()))
+        self.sequence, self.place = 0, ""
+
+    def _add_surfaces(self):
+        """Ledges and tables as plain blocks of their footprint."""
+        for piece in self.ward.furniture:
+            if piece.serves in (NORTH, SUPPLY, RIGHT):
+                height = LEDGE_HEIGHT if piece.serves != RIGHT else piece.height
+                block = Box(2 * piece.half_length, 2 * piece.half_width, height)
+                X_WF = RigidTransform(RollPitchYaw(0.0, 0.0, piece.yaw), [piece.x, piece.y, height / 2])
+                friction = CoulombFriction(0.6, 0.6)
+                self.plant.RegisterCollisionGeometry(self.plant.world_body(), X_WF, block, piece.name, friction)
+
+    def _wire(self, builder, options):
+        self.world, self.executor = World(self.ward, **options), InPlaceExecutor(self.ward)
+        self.battery = Battery(initial_charge=0.9)
+        systems = [
+            *(self.world, self.executor, self.battery, Drivetrain(), StateEstimator(), Arm()),
+            Magnet(self.plant, self.robot, self.items),
+            ItemPositions(self.plant, self.items),
+        ]
+        for system in systems:
+            builder.AddSystem(system)
+        rates = builder.AddSystem(Demultiplexer(2))
+        ports = {
+            "plant_state": self.plant.get_state_output_port(self.robot.robot),
+            "arm_state": self.plant.get_state_output_port(self.robot.arm),
+            "state": self.plant.get_state_output_port(),
+            "in_place_draw": rates.get_output_port(0),
+            "charging": rates.get_output_port(1),
+        }
+        for system in systems:
+            for i in range(system.num_output_ports()):
+                ports[system.get_output_port(i).get_name()] = system.get_output_port(i)
+        for system in systems:
+            for i in range(system.num_input_ports()):
+                port = system.get_input_port(i)
+                if port.get_name() in ports:
+                    builder.Connect(ports[port.get_name()], port)
+        builder.Connect(ports["charge_rates"], rates.get_input_port())
+        builder.Connect(ports["wheel_torques"], self.plant.get_actuation_input_port(self.robot.robot))
+        builder.Connect(ports["desired_state"], self.plant.get_desired_state_input_port(self.robot.arm))
+        builder.Connect(ports["generalized_force"], self.plant.get_applied_generalized_force_input_port())
+        builder.ExportInput(systems[3].GetInputPort("control"), "control")
+        builder.ExportInput(self.world.GetInputPort("task"), "task")
+        builder.ExportInput(self.world.GetInputPort("action"), "action")
+        builder.ConnectInput("action", self.executor.GetInputPort("action"))
+
+    def output(self, system, name):
+        return system.GetOutputPort(name).Eval(system.GetMyContextFromRoot(self.context))
+
+    def stand_at(self, place, ahead=0.0, aside=0.0, turn=0.0):
+        """Sets the robot, with what hangs at it, before a place, off its standing pose by that much."""
+        here, self.place = self.ward.place[place], place
+        cosine, sine = math.cos(here.yaw), math.sin(here.yaw)
+        x, y = here.x + ahead * cosine - aside * sine, here.y + ahead * sine + aside * cosine
+        X_BW = self.plant.GetFreeBodyPose(self.plant_context, self.robot.base).inverse()
+        X_WB = X_WB_at(x, y, here.yaw + turn)
+        for item, _ in self.output(self.executor, "magnet").held:
+            body = self.items.body(item)
+            X_BI = X_BW @ self.plant.GetFreeBodyPose(self.plant_context, body)
+            self.plant.SetFreeBodyPose(self.plant_context, body, X_WB @ X_BI)
+        SetRobotPose(self.plant, self.plant_context, self.robot, x=x, y=y, yaw=here.yaw + turn)
+        self.simulator.AdvanceTo(self.context.get_time() + 0.4)
+
+    def do(self, name):
+        """What became of an in-place action, and how long it took."""
+        self.sequence += 1
+        action = Action(self.sequence, ActionKind.IN_PLACE, name, ("robot1",), self.place, self.place)
+        self.action.GetMutableData().set_value(action)
+        begun = self.context.get_time()
+        while self.context.get_time() - begun < 60.0:
+            self.simulator.AdvanceTo(self.context.get_time() + 0.2)
+            report = self.output(self.executor, "in_place_report")
+            if report.finished and report.sequence == self.sequence:
+                break
+        seconds = self.context.get_time() - begun
+        self.simulator.AdvanceTo(self.context.get_time() + 0.2)
+        return report.outcome, seconds
+
+    def facts(self):
+        atoms = self.output(self.world, "world_facts").atoms
+        return {atom[0] for atom in atoms if atom[0] != "available"}
+
+    def position(self, item):
+        return self.plant.GetFreeBodyPose(self.plant_context, self.items.body(item)).translation()
+
+
+@pytest.mark.parametrize(
+    "arrival",
+    [
+        pytest.param((-0.1, 0.1, 0.2), id="short of the place, to its left"),
+        pytest.param((0.0, 0.0, 0.0), id="exactly there", marks=pytest.mark.slow),
+        pytest.param((0.1, -0.1, -0.2), id="beyond the place, to its right", marks=pytest.mark.slow),
+    ],
+)
+def test_a_medicine_and_a_supplement_are_collected_checked_and_delivered(arrival):
+    stage = Ward()
+    for place, names in (
+        (NORTH, ("collect_med_antibiotic", "check_medication_correct")),
+        (SUPPLY, ("collect_supp_vitamin_d", "check_supplement_correct")),
+        (RIGHT, ("deliver_on_bedside_table_right",)),
+    ):
+        stage.stand_at(place, *arrival)
+        for name in names:
+            outcome, _ = stage.do(name)
+            assert outcome is Outcome.SUCCESS, name
+    assert stage.facts() == {"delivered"}
+    table = stage.ward.furniture_of[RIGHT]
+    delivered = (f"{NORTH}/med_antibiotic", f"{SUPPLY}/supp_vitamin_d")
+    for item in delivered:
+        x, y, z = stage.position(item)
+        assert math.dist((x, y), (table.x, table.y)) < 0.3
+        assert z == pytest.approx(table.height + 0.05, abs=0.01)
+    for item in all_items(stage.ward):
+        pose = item.shelf_pose
+        if item.name in delivered:
+            continue
+        assert stage.position(item.name) == pytest.approx([pose.x, pose.y, pose.z], abs=1e-3)
+
+
+def test_a_wrong_medicine_is_found_put_down_and_collected_again():
+    stage = Ward(wrong_items=["med_analgesic"])
+    stage.stand_at(NORTH)
+    charge = stage.output(stage.battery, "charge")[0]
+    assert stage.do("collect_med_antibiotic")[0] is Outcome.SUCCESS
+    assert stage.do("check_medication_correct")[0] is Outcome.SUCCESS
+    assert "correct-medication" not in stage.facts()
+    assert stage.do("check_medication_wrong")[0] is Outcome.SUCCESS
+    assert "wrong-medication" in stage.facts()
+    assert stage.do("put_down_medicine")[0] is Outcome.SUCCESS
+    assert stage.facts() == set()
+    assert stage.position(f"{NORTH}/med_analgesic")[2] == pytest.approx(LEDGE_HEIGHT + 0.05, abs=0.01)
+    outcome, seconds = stage.do("collect_med_antibiotic")
+    assert outcome is Outcome.SUCCESS
+    assert seconds == pytest.approx(5.0, abs=0.6)
+    assert stage.do("check_medication_correct")[0] is Outcome.SUCCESS
+    assert stage.facts() == {"has-medication", "medication-is", "correct-medication"}
+    used = charge - stage.output(stage.battery, "charge")[0]
+    assert used == pytest.approx(0.05 + 0.02 + 0.02 + 0.05 + 0.05 + 0.02, abs=1e-3)
+
+
+def test_a_box_taken_away_is_not_there():
+    stage = Ward()
+    stage.stand_at(NORTH)
+    body = stage.items.body(f"{NORTH}/med_antibiotic")
+    stage.action.GetMutableData().set_value(Action(1, ActionKind.IN_PLACE, "collect_med_antibiotic", (), NORTH, NORTH))
+    stage.sequence = 1
+    stage.simulator.AdvanceTo(stage.context.get_time() + 2.2)
+    stage.plant.SetFreeBodyPose(stage.plant_context, body, RigidTransform([5.0, 10.0, 0.05]))
+    stage.simulator.AdvanceTo(stage.context.get_time() + 4.0)
+    assert stage.output(stage.executor, "in_place_report").outcome is Outcome.NOT_THERE
+    assert stage.facts() == set()
+
+
+@pytest.mark.slow
+def test_the_battery_is_recharged_at_the_charger():
+    stage = Ward()
+    stage.stand_at("charge_main")
+    outcome, seconds = stage.do("recharge")
+    assert outcome is Outcome.SUCCESS
+    assert seconds == pytest.approx(30.0, abs=0.3)
+    assert stage.output(stage.battery, "charge")[0] == pytest.approx(1.0, abs=1e-3)
