@@ -126,7 +126,7 @@ def problem_text(source: Source, sections: Mapping[str, list[Group]], parents: M
     writer = FormulaText(source, types=frozenset(parents))
     header = sections[":domain"][0] if sections[":domain"] else source.root
     name = header.items[1] if len(header.items) == 2 else header
-    if not sections[":domain"] or not isinstance(name, Symbol):
+    if not sections[":domain"] or not isinstance(name, Symbol) or not name.is_name:
         raise source.mistake(header, "the problem does not say which domain it belongs to", "'(:domain name)'")
     parts = [f"(define (problem {make_label(definition_name(source, 'problem'))})", f"(:domain {make_label(name)})"]
     parts += [_REQUIREMENTS, *_objects_text(source, writer, sections[":objects"], ":objects")]

@@ -49,17 +49,21 @@ class Plan:
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:
     """A plan as `plan --json` prints it."""
-    cost = plan.cost
-    if cost is None:
-        number: int | float | None = None
-    else:
-        number = cost.numerator if cost.denominator == 1 else float(cost)
     return {
         "status": plan.status,
-        "cost": number,
+        "cost": None if plan.cost is None else _as_number(plan.cost),
         "actions": list(plan.actions),
         "expanded": plan.expanded,
         "search_ms": round(plan.search_ms, 3),
         "parse_ms": round(plan.parse_ms, 3),
         "ground_ms": round(plan.ground_ms, 3),
     }
+
+
+def _as_number(cost: Fraction) -> int | float:
+    if cost.denominator == 1:
+        return cost.numerator
+    try:
+        return float(cost)
+    except OverflowError:
+        return round(cost)
