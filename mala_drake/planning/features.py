@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from pathlib import Path
 
+from mala_drake.clock import TICK
 from mala_drake.errors import BadInput
 from mala_drake.planning.leg_costs import LegCost, LegCosts
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, approach_error
@@ -101,7 +102,7 @@ def table_fluents(task: str) -> Fluents:
     fluents: Fluents = {}
     for verb in Verb:
         name = verb.value.replace("_", "-")
-        fluents[(f"{name}-time",)] = _rounded(SECONDS[verb], 2)
+        fluents[(f"{name}-time",)] = _rounded(SECONDS[verb] + TICK, 2)  # It takes a tick to see that it is done.
         if verb is not Verb.RECHARGE:
             fluents[(f"{name}-battery",)] = _rounded(CHARGE[verb], 4)
     for unit, scale in zip(_UNITS, FEATURE_SCALES[task].as_array(), strict=True):

@@ -74,14 +74,14 @@ def rounds() -> list[Round]:
             sums += (leg.time, leg.risk, leg.charge, leg.discomfort, 0.0)
             length, actions, here = length + leg.length, actions + 1, stop
             if stop in chargers:
-                sums[0], charge, actions = sums[0] + 30.0, 1.0, actions + 1
+                sums[0], charge, actions = sums[0] + 30.2, 1.0, actions + 1
             elif bedside:
                 place = ward.place[stop]
                 error = approach_error((place.x, place.y, place.yaw), IDEAL_HAND_OVER)
-                sums += (20.0, 0.0, 0.02, costs.standing_discomfort(stop, 20.0), error)
+                sums += (20.2, 0.0, 0.02, costs.standing_discomfort(stop, 20.2), error)
                 actions += 1
             else:
-                sums += (5.0 + 2.0, 0.0, 0.05 + 0.02, 0.0, 0.0)
+                sums += (5.2 + 2.2, 0.0, 0.05 + 0.02, 0.0, 0.0)
                 charge, actions = charge - 0.07, actions + 2
                 if charge < reserve[stop]:
                     return None

@@ -59,7 +59,7 @@ def test_a_written_problem_is_only_rewritten_when_it_differs(
     ward: Ward, costs: LegCosts, generated: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "problem_med.pddl"
-    path.write_text(generated.replace("(= (collect-time) 5)", "(= (collect-time) 7)"))
+    path.write_text(generated.replace("(= (collect-time) 5.2)", "(= (collect-time) 7)"))
     assert mut.write_problem(path, ward, "medication", costs=costs)
     assert path.read_text() == generated
     assert not mut.write_problem(path, ward, "medication", costs=costs)

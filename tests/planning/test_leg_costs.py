@@ -56,11 +56,13 @@ def test_risk_is_the_integral_of_the_level_over_the_route(ward: Ward, costs: mut
     assert leg.risk == pytest.approx(total / RISK_LENGTH, rel=0.02)
 
 
-def test_charge_is_a_hundredth_a_metre_and_a_constant_a_leg(ward: Ward) -> None:
-    costs = mut.LegCosts(ward, calibration=mut.LegCalibration(charge_per_metre=0.01, charge_per_leg=0.003))
-    leg = costs.between("home", "supply_B")
+def test_charge_is_a_hundredth_a_metre_but_for_the_metres_of_braking(ward: Ward) -> None:
+    calibration = mut.LegCalibration(charge_per_metre=0.01, coasting_distance=1.5)
+    leg = mut.LegCosts(ward, calibration=calibration).between("home", "supply_B")
     assert leg is not None
-    assert leg.charge == pytest.approx(0.01 * leg.length + 0.003)
+    assert leg.charge == pytest.approx(0.01 * (leg.length - 1.5))
+    assert calibration.charge(1.0) == pytest.approx(0.005)
+    assert calibration.charge(3.0) == pytest.approx(0.015)
 
 
 def test_only_legs_that_come_near_the_bed_are_felt_by_the_patient(costs: mut.LegCosts) -> None:
@@ -126,4 +128,4 @@ def test_predictions_are_sums_over_the_profile_that_the_controller_follows(ward:
     assert leg is not None
     at_the_end = leg.discomfort - driven  # Turning and settling at the bedside.
     seconds = at_the_end / costs.standing_discomfort("patient_bed_right", 1.0)
-    assert 1.0 < seconds < 2.5
+    assert 2.2 < seconds < 3.5
