@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
 from typing import TypeGuard
 
@@ -16,6 +17,7 @@ from mala_drake.errors import BadInput
 FORMATS = (".dot", ".md", ".svg", ".png")
 
 _NODE_LINE = re.compile(r"digraph _\d|subgraph cluster|s\d")
+_EDGE_LINE = re.compile(r"s\d+\w*:\w+:e -> ")
 _NODE = re.compile(r"\b(_|clusters?|s)(\d+)(?=\b|diagram|in\b|out\b|subsystems)")
 
 _Port = tuple[str, str]  # Node and port name.
@@ -56,7 +58,10 @@ def write_graph(diagram: Diagram, path: str | Path, max_depth: int | None = None
 
 
 def graphviz_source(diagram: Diagram, max_depth: int | None = None) -> str:
-    """Drake's own Graphviz text, its nodes numbered anew: Drake counts all systems that the process ever built."""
+    """Drake's own Graphviz text, made to depend on the diagram alone.
+
+    Drake numbers the nodes by a count of all systems that the process ever built, and orders edges by memory address.
+    """
     numbers: dict[str, int] = {}
 
     def renumbered(match: re.Match[str]) -> str:
@@ -64,7 +69,9 @@ def graphviz_source(diagram: Diagram, max_depth: int | None = None) -> str:
 
     lines = diagram.GetGraphvizString(max_depth).splitlines()
     # Other lines are parts of labels and may hold any name.
-    return "\n".join(_NODE.sub(renumbered, line) if _NODE_LINE.match(line) else line for line in lines) + "\n"
+    lines = [_NODE.sub(renumbered, line) if _NODE_LINE.match(line) else line for line in lines]
+    blocks = [list(block) for _, block in groupby(lines, key=lambda line: bool(_EDGE_LINE.match(line)))]
+    return "".join(f"{line}\n" for block in blocks for line in (sorted(block) if _EDGE_LINE.match(block[0]) else block))
 
 
 def mermaid(diagram: Diagram, max_depth: int | None = None) -> str:

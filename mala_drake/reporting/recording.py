@@ -54,14 +54,14 @@ def _css(color: tuple[float, float, float]) -> str:
 
 
 def StartRecording(meshcat: Meshcat, *, frame_rate: float = FRAME_RATE) -> None:
-    """Starts to record what visualizers publish, without showing it live.
+    """Starts to record what visualizers publish; it is shown live all the same.
 
     Args:
         meshcat: the one that the diagram's `MeshcatVisualizer` publishes to.
         frame_rate: frames a second of simulation.
     """
     meshcat.DeleteRecording()
-    meshcat.StartRecording(frames_per_second=frame_rate, set_visualizations_while_recording=False)
+    meshcat.StartRecording(frames_per_second=frame_rate, set_visualizations_while_recording=True)
 
 
 def FinishRecording(
