@@ -141,6 +141,7 @@ class PlanningTask:
         known = self._groundings.get(key)
         changing = state.facts - static
         if known is not None and changing <= known.reached:
+            self._groundings[key] = self._groundings.pop(key)  # The least recently used one is the first to go.
             return known
         self._check_names(state.facts, self.description.predicates, "fact")
         self._check_names(state.values, self.description.functions, "fluent")
