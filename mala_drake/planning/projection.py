@@ -17,6 +17,7 @@ from mala_drake.planning.operators import Condition, Effect, Operator, OperatorT
 
 _MOST_NODES = 4_000
 _MOST_UNCERTAIN = 3  # Conditional effects on facts, in one operator, that hang on numbers: each doubles the successors.
+_UNKNOWN = -1  # Stands for a cost that was not looked at yet; no cost is negative.
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,8 @@ class FactGraph:
         masks = list(self.nodes)
         for node in queue:
             budget.tick()
+            if self._is_surely_goal(masks[node]):
+                continue  # No plan goes on from there: no step has a negative cost.
             for step, successor in self._steps_from(masks[node]):
                 if successor not in self.nodes:
                     queue.append(self._add(successor))
@@ -64,6 +67,10 @@ class FactGraph:
         if self._task.goal is not None and may_hold(self._task.goal, mask):
             self.goals.append(node)
         return node
+
+    def _is_surely_goal(self, mask: int) -> bool:
+        goal = self._task.goal
+        return goal is not None and not goal.reads_numbers and may_hold(goal, mask)
 
     def _steps_from(self, mask: int) -> list[tuple[_Step, int]]:
         result = []
@@ -102,10 +109,12 @@ class ProjectionHeuristic:
         self._graph = graph
         self._model = model
         self._steps = tuple(graph.steps)
-        self._costs: dict[int, Number | None] = {}
-        self._distances: dict[int, Number] = dict.fromkeys(graph.goals, 0)
-        self._settled: set[int] = set()
+        self._costs: list[Number | None] = [_UNKNOWN] * len(self._steps)
+        self._distances: list[Number | None] = [None] * len(graph.nodes)
+        self._settled = bytearray(len(graph.nodes))
         self._queue: list[tuple[Number, int]] = [(0, node) for node in graph.goals]
+        for node in graph.goals:
+            self._distances[node] = 0
 
     def __call__(self, state: State) -> Number | None:
         """The bound in a state, None if no way to the goal is left.
@@ -114,27 +123,31 @@ class ProjectionHeuristic:
         of the graph is farther from the goal than the robot.
         """
         node = self._graph.nodes[state[0]]
-        if node not in self._settled:
+        if not self._settled[node]:
             self._settle(node)
-        return self._distances[node] if node in self._settled else None
+        return self._distances[node] if self._settled[node] else None
 
     def _settle(self, wanted: int) -> None:
         distances, costs, settled, queue = self._distances, self._costs, self._settled, self._queue
-        while queue and wanted not in settled:
+        incoming = self._graph.incoming
+        while queue and not settled[wanted]:
             distance, node = heapq.heappop(queue)
-            if node in settled:
+            if settled[node]:
                 continue
-            settled.add(node)
-            for before, step in self._graph.incoming[node]:
-                if step not in costs:
-                    costs[step] = _lower_bound(self._steps[step], self._model)
-                cost = costs[step]
-                if cost is None or before in settled:
+            settled[node] = 1
+            for before, step in incoming[node]:
+                if settled[before]:
                     continue
-                known = distances.get(before)
-                if known is None or distance + cost < known:
-                    distances[before] = distance + cost
-                    heapq.heappush(queue, (distance + cost, before))
+                cost = costs[step]
+                if cost == _UNKNOWN:
+                    cost = costs[step] = _lower_bound(self._steps[step], self._model)
+                if cost is None:
+                    continue
+                reached = distance + cost
+                known = distances[before]
+                if known is None or reached < known:
+                    distances[before] = reached
+                    heapq.heappush(queue, (reached, before))
 
 
 def _lower_bound(step: _Step, model: Model) -> Number | None:
