@@ -46,11 +46,10 @@ class TaskExecutive:
         self._max_actions = max_actions
         self._max_expansions = max_expansions
         self.solve_seconds: list[float] = []
+        # Grounding is slow and happens once, here: every replan is fast.
         for name, task in tasks.items():
             for state in task.typical_states():
-                self._planners[name].solve(
-                    state, max_expansions=max_expansions
-                )  # Grounds; replans are fast from now on.
+                self._planners[name].solve(state, max_expansions=max_expansions)
 
     def begin(self, progress: TaskProgress, task: Task, situation: Situation) -> TaskProgress:
         """Takes up a new task, whatever was going on before."""
@@ -61,21 +60,19 @@ class TaskExecutive:
 
     def conclude(self, progress: TaskProgress, report: ActionReport, situation: Situation) -> TaskProgress:
         """Draws the consequences of a finished action, then plans and dispatches the next one."""
-        action, observed = progress.action, situation.observed
-        succeeded = report.outcome is Outcome.SUCCESS
-        assert progress.expected is not None
-        differing = self._tasks[progress.task.name].mismatch(progress.expected, observed)
+        care, action, observed = self._tasks[progress.task.name], progress.action, situation.observed
+        differing = care.mismatch(progress.expected, observed) if progress.expected is not None else ()
         progress = progress.executed(
             mismatched=bool(differing), standing_at=_standing_at(progress, report.outcome, observed.place)
         )
         if report.outcome is Outcome.BATTERY_EMPTY:
             return progress.finished(failure=f"battery empty during {action.text}")
-        if not succeeded:
+        if report.outcome is not Outcome.SUCCESS:
             progress, count = progress.failed_once_more()
             if count >= _SAME_FAILURES:
                 return progress.finished(failure=f"{action.text} failed {count} times: {_reason(report)}")
         if report.outcome is Outcome.BLOCKED:
-            progress = progress.closing(self._tasks[progress.task.name].ways_closed_by(action))
+            progress = progress.closing(care.ways_closed_by(action))
         return self.proceed(progress, situation)
 
     def proceed(self, progress: TaskProgress, situation: Situation) -> TaskProgress:
@@ -87,32 +84,36 @@ class TaskExecutive:
             situation.observed, situation.pose, standing_at=progress.standing_at, closed=progress.closed
         )
         plan = self._solve(care, state, situation.weights)
-        message = PlanMessage(
-            sequence=progress.plan.sequence + 1,
-            status=_STATUS[plan.status],
-            actions=plan.actions,
-            cost=float(plan.cost) if plan.cost is not None else 0.0,
-        )
-        progress = progress.following(message, state)
-        if plan.status == "timeout":
-            return progress.finished(failure=f"the planner gave up after {plan.expanded} expansions")
-        if not plan.found:
-            where = care.place(state) or "in transit"
-            return progress.finished(failure=f"no plan from {where} at charge {situation.observed.charge:.2f}")
-        if not plan.actions:
-            return progress.finished()
-        if len(progress.report.actions) >= self._max_actions:
-            return progress.finished(failure=f"not done after {self._max_actions} actions")
+        progress = progress.following(_message(plan, sequence=progress.plan.sequence + 1), state)
+        where = f"{care.place(state) or 'in transit'} at charge {situation.observed.charge:.2f}"
+        failure = self._failure(plan, len(progress.report.actions), where)
+        if failure or not plan.actions:
+            return progress.finished(failure=failure)
         text = plan.actions[0]
         expected = care.planning_task.apply(state, text)
         action = care.action(text, state, expected, sequence=progress.action.sequence + 1)
         return progress.dispatching(action, expected, care.features(state, text))
+
+    def _failure(self, plan: Plan, actions_done: int, where: str) -> str:
+        """Why a plan cannot be followed; empty if it can."""
+        if plan.status == "timeout":
+            return f"the planner gave up after {plan.expanded} expansions"
+        if not plan.found:
+            return f"no plan from {where}"
+        if plan.actions and actions_done >= self._max_actions:
+            return f"not done after {self._max_actions} actions"
+        return ""
 
     def _solve(self, care: CareTask, state: PlannerState, weights: tuple[float, ...]) -> Plan:
         started = time.perf_counter()
         plan = self._planners[care.name].solve(state, weights, max_expansions=self._max_expansions)
         self.solve_seconds.append(time.perf_counter() - started)
         return plan
+
+
+def _message(plan: Plan, *, sequence: int) -> PlanMessage:
+    cost = 0.0 if plan.cost is None else float(plan.cost)
+    return PlanMessage(sequence, _STATUS[plan.status], plan.actions, cost)
 
 
 def _wait(progress: TaskProgress) -> TaskProgress:
