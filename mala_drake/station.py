@@ -64,14 +64,12 @@ def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None) -> Di
     """
     Validate(scenario)
     ward = scenario.load_ward()
-    station = _StationBuilder(scenario, ward)
+    station = _StationBuilder(scenario, ward, meshcat)
     station.add_physics()
     station.add_low_level()
     station.add_layers()
     station.add_learning()
     station.connect()
-    if meshcat is not None:
-        station.add_visualizer(meshcat)
     return station.build()
 
 
@@ -112,9 +110,10 @@ def learner_state_of(station: Diagram, context: Context) -> FloatArray:
 class _StationBuilder:
     """Adds the systems layer by layer, from the floor up, then wires them."""
 
-    def __init__(self, scenario: Scenario, ward: Ward) -> None:
+    def __init__(self, scenario: Scenario, ward: Ward, meshcat: Meshcat | None) -> None:
         self._scenario = scenario
         self._ward = ward
+        self._meshcat = meshcat
         self._congestion = Congestion(ward)
         self._builder = DiagramBuilder()
         self._plant: MultibodyPlant
@@ -127,7 +126,7 @@ class _StationBuilder:
     def add_physics(self) -> None:
         """Ward, robot, boxes and what stands about, in one discrete plant with contact."""
         self._plant, self._scene_graph = MakeCarePlant(self._builder)
-        AddWard(self._plant, self._ward)
+        AddWard(self._plant, self._ward, visible=self._meshcat is not None)
         self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
         self._items = AddItems(self._plant, self._scene_graph, all_items(self._ward), self._robot)
         for config in self._scenario.world.obstacles:
@@ -291,13 +290,11 @@ class _StationBuilder:
             if system.HasInputPort(name) and not self._builder.IsConnectedOrExported(system.GetInputPort(name)):
                 self._builder.Connect(port, system.GetInputPort(name))
 
-    def add_visualizer(self, meshcat: Meshcat) -> None:
-        """Shows the illustration geometry in Meshcat."""
-        parameters = MeshcatVisualizerParams(role=Role.kIllustration, publish_period=1.0 / _FRAME_RATE)
-        MeshcatVisualizer.AddToBuilder(self._builder, self._scene_graph, meshcat, parameters)
-
     def build(self) -> Diagram:
-        """The finished diagram."""
+        """The finished diagram, shown in Meshcat if there is one."""
+        if self._meshcat is not None:
+            parameters = MeshcatVisualizerParams(role=Role.kIllustration, publish_period=1.0 / _FRAME_RATE)
+            MeshcatVisualizer.AddToBuilder(self._builder, self._scene_graph, self._meshcat, parameters)
         diagram = self._builder.Build()
         diagram.set_name("care_station")
         return diagram
