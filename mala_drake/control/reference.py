@@ -20,7 +20,7 @@ from .model import STATE_SIZE, StateIndex
 
 _TURN_FIRST = 0.5  # Radians of heading error beyond which a moving start turns on the spot first.
 _ALIGNED = 0.12  # Radians within which such a turn is done.
-_MARGIN = 0.95  # Share of the speed ceiling that the reference uses, so that the limit itself stays inactive.
+_MARGIN = 0.92  # Share of the speed ceiling that the reference uses, so that the limit itself stays inactive.
 _SEARCH_BACK, _SEARCH_AHEAD = 10, 60  # Samples of the path in which the robot is looked for.
 _REVERSE_SPEED = 0.3  # Metres per second at most when creeping back.
 
