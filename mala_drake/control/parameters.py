@@ -151,7 +151,7 @@ class InputParameters(_Arrays):
     def __post_init__(self) -> None:
         lower = self._freeze("lower", (CONTROL_SIZE,))
         upper = self._freeze("upper", (CONTROL_SIZE,))
-        _require("InputParameters", (lower <= upper).all(), f"lower {lower} above upper {upper}", "lower <= upper")
+        _require("InputParameters", (lower <= upper).all(), (lower, upper), "lower <= upper")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
