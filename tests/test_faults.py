@@ -1,4 +1,4 @@
-"""What goes wrong in a ward, on the executed physics: each fault has a defined answer, and success is never pretended."""
+"""What goes wrong in a ward, on the executed physics: each fault has its answer, success is never feigned."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_a_robot_displaced_in_mid_leg_finds_its_way_and_delivers():
     episode = Episode(one_episode())
     assert episode.advance(20.0, until=lambda: episode.state()[Y] > 5.0)
     pose = episode.plant.GetFreeBodyPose(episode.plant_context, episode.base)
-    pose.set_translation(pose.translation() + [4.0, -1.0, 0.0])
+    pose.set_translation(pose.translation() + np.array([4.0, -1.0, 0.0]))
     episode.plant.SetFreeBodyPose(episode.plant_context, episode.base, pose)
     assert episode.advance(300.0, until=episode.finished)
     assert episode.report().success
@@ -114,7 +114,7 @@ def test_a_robot_carried_off_after_its_leg_is_a_mismatch_and_it_plans_from_where
     arrived = lambda: episode.read("mpc_controller", "leg_report").outcome is Outcome.SUCCESS  # noqa: E731
     assert episode.advance(60.0, until=arrived)
     pose = episode.plant.GetFreeBodyPose(episode.plant_context, episode.base)
-    pose.set_translation(pose.translation() + [3.0, -6.0, 0.0])
+    pose.set_translation(pose.translation() + np.array([3.0, -6.0, 0.0]))
     episode.plant.SetFreeBodyPose(episode.plant_context, episode.base, pose)
     assert episode.advance(400.0, until=episode.finished)
     report = episode.report()
@@ -154,9 +154,11 @@ def test_a_solver_that_always_fails_ends_the_episode_in_failure_with_the_robot_s
     episode = Episode(one_episode())
     controller, _ = episode.own("mpc_controller")
     solve = controller._solver.solve
-    monkeypatch.setattr(
-        controller._solver, "solve", lambda state, parameters, start=None: solve(np.full(6, np.nan), parameters, start)
-    )
+
+    def failing(state, parameters, start=None):
+        return solve(np.full(6, np.nan), parameters, start)
+
+    monkeypatch.setattr(controller._solver, "solve", failing)
     assert episode.advance(120.0, until=episode.finished)
     assert not episode.report().success
     assert "solver_failure" in episode.report().failure
@@ -210,7 +212,7 @@ def test_a_state_estimate_that_turns_nan_brakes_the_robot_and_is_reported():
     episode = Episode(one_episode())
     episode.advance(6.0)
     assert math.hypot(*episode.state()[V_X : V_X + 2]) > 0.5
-    estimator, context = episode.own("state_estimator")
+    _, context = episode.own("state_estimator")
     for _ in range(60):
         samples = context.get_mutable_discrete_state_vector()
         samples.SetFromVector(np.full(samples.size(), np.nan))

@@ -106,10 +106,11 @@ class LegGuide:
     def _keep_clear(self, leg: Leg, state: NDArray[np.float64], seen: Iterable[Shape]) -> Leg:
         """Replans round shapes that have come into view and stand in the way."""
         unmapped = self._unmapped(leg.unmapped, seen)
-        if unmapped is leg.unmapped or leg.track is None:
+        track = leg.track
+        if unmapped is leg.unmapped or track is None:
             return leg
         leg = replace(leg, unmapped=unmapped)
-        ahead = leg.track.path.points[np.searchsorted(leg.track.path.lengths, leg.length) :]
+        ahead = track.path.points[np.searchsorted(track.path.lengths, leg.length) :]
         if ShapeDistances(unmapped)(ahead).min() > BODY_RADIUS + _REPAIR_CLEARANCE:
             return leg
         return self._on_new_track(leg, state)
