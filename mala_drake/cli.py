@@ -7,60 +7,113 @@ failed (an episode failed, no plan exists, time ran out), 2 on bad input, told i
 from __future__ import annotations
 
 import json
+import math
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from mala_drake import __version__
 from mala_drake.errors import BadInput
+
+if TYPE_CHECKING:
+    from mala_drake.planning.planner import SearchName
+    from mala_drake.scenario import Scenario
 
 app = typer.Typer(
     name="mala-drake",
     help="A care robot that schedules, plans, drives and learns, as one Drake systems diagram.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
 
 ScenarioFile = Annotated[Path | None, typer.Argument(help="Scenario file; the default scenario if left out.")]
 
+# Click's UsageError: typer exports its subclass only, and brings a click of its own or uses the installed one.
+_USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]
+
+_SEARCHES: tuple[SearchName, ...] = ("astar", "ucs")
+
+_OPTION_OF = {
+    "task": "--task",
+    "patient.profile": "--profile",
+    "episodes": "--episodes",
+    "random_seed": "--seed",
+    "control.solver": "--solver",
+}
+"""The options that set a field of the scenario."""
+
+
+@app.callback(invoke_without_command=True)
+def start(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
+) -> None:
+    """A care robot that schedules, plans, drives and learns, as one Drake systems diagram."""
+    if version:
+        typer.echo(f"mala-drake {__version__}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
 
 @app.command()
 def run(
     scenario: ScenarioFile = None,
-    task: Annotated[str | None, typer.Option(help="medication; what every episode is.")] = None,
+    task: Annotated[str | None, typer.Option(help="What every episode is: medication.")] = None,
     profile: Annotated[str | None, typer.Option(help="Patient profile, for example safety_first.")] = None,
     episodes: Annotated[int | None, typer.Option(help="Number of episodes.")] = None,
     seed: Annotated[int | None, typer.Option(help="Random seed.")] = None,
     solver: Annotated[str | None, typer.Option(help="MPC solver: snopt or ipopt.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for episodes.jsonl and summary.json.")] = Path("results"),
+    out: Annotated[
+        Path, typer.Option(help="Folder for episodes.jsonl and summary.json; those of an earlier run are replaced.")
+    ] = Path("results"),
     html: Annotated[Path | None, typer.Option(help="Write a self-contained 3-D recording here.")] = None,
     realtime_rate: Annotated[float, typer.Option(help="Simulation speed; 0 is as fast as possible.")] = 0.0,
     meshcat: Annotated[bool, typer.Option("--meshcat", help="Show the run live in the browser.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON and nothing else.")] = False,
 ) -> None:
-    """Simulate the closed loop: schedule, plan, drive, deliver, be rated, learn."""
+    """Simulate the closed loop: schedule, plan, drive, deliver, be rated, learn.
+
+    Each episode is written as soon as it has ended; what is written stays when the run is interrupted.
+    """
+    if not (math.isfinite(realtime_rate) and realtime_rate >= 0.0):
+        raise BadInput("--realtime-rate", str(realtime_rate), "a finite number >= 0")
     from mala_drake.experiments.run import RunOptions, run_scenario
     from mala_drake.reporting.console import RunConsole
+
+    chosen = _chosen_scenario(scenario, task, profile, episodes, seed, solver)
+    options = RunOptions(out=out, html=html, realtime_rate=realtime_rate, live=meshcat)
+    with RunConsole(chosen, quiet=as_json) as console:
+        summary = run_scenario(chosen, options, watcher=console)
+    if as_json:
+        typer.echo(json.dumps(summary))
+    else:
+        console.show(summary)
+        console.show_files(options.files)
+    raise typer.Exit(0 if summary["totals"]["successes"] == summary["totals"]["episodes"] else 1)
+
+
+def _chosen_scenario(
+    file: Path | None, task: str | None, profile: str | None, episodes: int | None, seed: int | None, solver: str | None
+) -> Scenario:
+    """The scenario of the file with what the options change; a mistake is told by the name of its option."""
     from mala_drake.scenario import LoadScenario, Validate
 
-    chosen = LoadScenario(scenario)
+    chosen = LoadScenario(file)
     chosen.task = chosen.task if task is None else task
     if profile is not None:
         chosen.patient.profile, chosen.patient.true_weights = profile, []
     chosen.episodes = chosen.episodes if episodes is None else episodes
     chosen.random_seed = chosen.random_seed if seed is None else seed
     chosen.control.solver = chosen.control.solver if solver is None else solver
-    Validate(chosen, where="options" if scenario is None else scenario.name)
-    options = RunOptions(out=out, html=html, realtime_rate=realtime_rate, live=meshcat)
-    with RunConsole(chosen, quiet=as_json) as console:
-        summary = run_scenario(chosen, options, watcher=console)
-        if as_json:
-            typer.echo(json.dumps(summary))
-        else:
-            console.show(summary)
-    raise typer.Exit(0 if summary["totals"]["successes"] == summary["totals"]["episodes"] else 1)
+    try:
+        Validate(chosen, where="")
+    except BadInput as error:
+        raise BadInput(_OPTION_OF.get(error.where, error.where), error.what, error.expected) from None
+    return chosen
 
 
 @app.command()
@@ -73,9 +126,15 @@ def plan(
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON and nothing else.")] = False,
 ) -> None:
     """Solve a PDDL task to optimality."""
+    values = _weights(weights)
+    if timeout is not None and not (math.isfinite(timeout) and timeout > 0):
+        raise BadInput("--timeout", str(timeout), "a positive number of seconds")
+    chosen = next((name for name in _SEARCHES if name == search), None)
+    if chosen is None:
+        raise BadInput("--search", repr(search), "one of " + ", ".join(_SEARCHES))
     from mala_drake.planning import plan_to_json, solve_files
 
-    found = solve_files(domain, problem, weights=_weights(weights), timeout=timeout, search=search)
+    found = solve_files(domain, problem, weights=values, timeout=timeout, search=chosen)
     result = plan_to_json(found)
     if as_json:
         typer.echo(json.dumps(result))
@@ -140,16 +199,32 @@ def bench(
         print_rows(title, rows)
 
 
-def main() -> None:
-    """Runs the command line, with every mistake of the user told in one line."""
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Runs the command line and ends the process, with every mistake of the user told in one line.
+
+    Args:
+        arguments: of the command line; None for those of the process.
+    """
     try:
-        app()
+        status = app(args=None if arguments is None else list(arguments), prog_name="mala-drake", standalone_mode=False)
     except BadInput as error:
-        sys.stderr.write(f"mala-drake: {error}\n")
-        sys.exit(2)
-    except KeyboardInterrupt:
-        sys.stderr.write("mala-drake: interrupted; what was written before stays\n")
-        sys.exit(130)
+        _end(str(error), 2)
+    except _USAGE_ERROR as error:
+        _end(_usage(error), 2)
+    except (KeyboardInterrupt, typer.Abort):
+        _end("interrupted; what was written before stays", 130)
+    sys.exit(status or 0)
+
+
+def _usage(error: Any) -> str:
+    """A wrong option or argument in one line, and where to read about the right ones."""
+    command = error.ctx.command_path if error.ctx is not None else "mala-drake"
+    return f"{' '.join(error.format_message().split()).rstrip('.')}; see {command} --help"
+
+
+def _end(line: str, status: int) -> NoReturn:
+    sys.stderr.write(f"mala-drake: {line}\n")
+    sys.exit(status)
 
 
 if __name__ == "__main__":

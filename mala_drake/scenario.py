@@ -18,6 +18,7 @@ from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import validated_weights
 from mala_drake.resources import models_folder
 from mala_drake.ward.items import all_items
+from mala_drake.ward.models import ward_models
 from mala_drake.ward.routes import BODY_RADIUS
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import LoadWard, Ward
@@ -107,7 +108,7 @@ class Scenario:
     task: str = "medication"  # What every episode is; alternate is medication and meal in turn.
     episodes: int = 2
     episode_time_limit: float = 900.0  # Seconds of simulation after which an episode has failed.
-    ward: str = ""  # Path of a ward map; empty is the care centre that comes with the package.
+    ward: str = ""  # Path of a ward map, from the scenario's folder; empty is the map that comes with the package.
     robot: RobotConfig = field(default_factory=RobotConfig)
     world: WorldConfig = field(default_factory=WorldConfig)
     patient: PatientConfig = field(default_factory=PatientConfig)
@@ -146,17 +147,23 @@ def LoadScenario(path: str | Path | None = None) -> Scenario:
     """
     file = Path(path) if path is not None else models_folder() / "default.scenario.yaml"
     scenario = load_typed(Scenario, file, defaults=Scenario())
+    if scenario.ward:
+        scenario.ward = str(file.parent / scenario.ward)
     Validate(scenario, where=file.name)
     return scenario
 
 
 def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
-    """Checks every field of a scenario.
+    """Checks every field of a scenario, and its ward.
+
+    Args:
+        scenario: to be checked.
+        where: begins what the error says; may be empty.
 
     Raises:
         BadInput: for the first field that cannot be simulated.
     """
-    at = f"{where}: "
+    at = f"{where}: " if where else ""
     _finite(scenario, at)
     _check_names(scenario, at)
     _check_ranges(scenario, at)
@@ -166,7 +173,11 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
     ):
         if weights:
             validated_weights(weights, where=at + name)
-    _check_obstacles(scenario, at)
+    ward = _checked_ward(scenario, at)
+    kinds = sorted({item.kind for item in all_items(ward)})
+    for i, kind in enumerate(scenario.world.wrong_items):
+        _one_of(f"{at}world.wrong_items[{i}]", kind, kinds)
+    _check_obstacles(scenario, ward, at)
 
 
 def _finite(value: Any, at: str) -> None:
@@ -191,11 +202,6 @@ def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "patient.profile", scenario.patient.profile, tuple(PROFILES))
     _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
     _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
-    if scenario.ward and not Path(scenario.ward).is_file():
-        raise BadInput(at + "ward", repr(scenario.ward), "the path of a ward map, or nothing")
-    kinds = sorted({item.kind for item in all_items(scenario.load_ward())})
-    for i, kind in enumerate(scenario.world.wrong_items):
-        _one_of(f"{at}world.wrong_items[{i}]", kind, kinds)
 
 
 def _task_choices() -> tuple[str, ...]:
@@ -233,13 +239,36 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
             raise BadInput(at + name, f"{value:g}", limits)
 
 
-def _check_obstacles(scenario: Scenario, at: str) -> None:
+def _checked_ward(scenario: Scenario, at: str) -> Ward:
+    """The ward, once it is known that there is a home and that the robot fits wherever it is to stand."""
+    if scenario.ward and not Path(scenario.ward).is_file():
+        raise BadInput(at + "ward", repr(scenario.ward), "the path of a ward map, or nothing")
     ward = scenario.load_ward()
-    home = next((place for place in ward.places if place.category == "home"), None)
-    if home is None:
-        raise BadInput(at + "ward", "a map without a place of category home", "a place where the robot starts")
+    where = Path(scenario.ward).name or "ward"
+    ward_models(ward)  # Refuses furniture that cannot be built.
+    if all(place.category != "home" for place in ward.places):
+        raise BadInput(f"{where}: places", "none of category home", "a place where the robot starts")
+    solid = (*ward.furniture, *ward.walls)
+    distances = ShapeDistances([piece.shape for piece in solid])
+    for i, place in enumerate(ward.places):
+        gaps = distances([place.x, place.y])
+        nearest = int(gaps.argmin())
+        if gaps[nearest] < BODY_RADIUS:
+            raise BadInput(
+                f"{where}: places[{i}] {place.name}",
+                f"{solid[nearest].name} is {max(float(gaps[nearest]), 0.0):.2f} m from it",
+                f"{BODY_RADIUS} m or more to anything solid, for the robot to stand there",
+            )
+    return ward
+
+
+def _check_obstacles(scenario: Scenario, ward: Ward, at: str) -> None:
+    home = next(place for place in ward.places if place.category == "home")
+    names = [obstacle.name for obstacle in scenario.world.obstacles]
     for i, (config, shape) in enumerate(zip(scenario.world.obstacles, scenario.unmapped_shapes, strict=True)):
         where = f"{at}world.obstacles[{i}]"
+        if not config.name or config.name in names[:i]:
+            raise BadInput(f"{where}.name", repr(config.name), "a name that no other obstacle has")
         if min(config.half_length, config.half_width, config.height) <= 0:
             raise BadInput(where, "a size that is not positive", "half_length, half_width and height above 0")
         if ShapeDistances([shape])([home.x, home.y])[0] < BODY_RADIUS:

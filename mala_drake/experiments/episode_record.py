@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,14 +12,23 @@ from typing import Any
 
 import numpy as np
 
+from mala_drake.errors import BadInput
 from mala_drake.preferences import CRITERIA
 
+EPISODES_FILE = "episodes.jsonl"
 _DIGITS = 9  # Of floating-point numbers in results: more than any of them means.
+
+
+_NOT_WRITTEN = ("leg_outcomes",)  # For who watches a run; in the file, `failure` says why an episode failed.
 
 
 @dataclass
 class EpisodeRecord:
-    """One episode as it was executed on the physics; the fields are those of the file, in their order."""
+    """One episode as it was executed on the physics; the fields are those of the file, in their order.
+
+    Clearance and collisions are taken at the plant step; `terminal_errors_m` and the like have one entry a leg. Only
+    `timing` depends on the machine.
+    """
 
     episode: int
     task: str
@@ -54,14 +64,21 @@ class EpisodeRecord:
 
     def to_json(self) -> str:
         """The record as one line of JSON; numbers that are not finite become null."""
-        return json.dumps(_plain(vars(self)), ensure_ascii=False)
+        written = {name: value for name, value in vars(self).items() if name not in _NOT_WRITTEN}
+        return json.dumps(plain(written), ensure_ascii=False)
+
+    @property
+    def rated(self) -> bool:
+        """Whether the patient rated the episode, in part at least."""
+        return any(rating is not None for rating in self.ratings)
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """The value as JSON can hold it: numbers rounded to 9 decimals, those that are not finite as null."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, (bool, int, str)) or value is None:
         return value
     number = float(value)
@@ -73,11 +90,23 @@ def by_criterion(values: Iterable[float]) -> dict[str, float]:
     return dict(zip(CRITERIA, map(float, values), strict=True))
 
 
-def milliseconds(name: str, seconds: Sequence[float]) -> dict[str, float]:
-    """Median, 95th percentile and maximum of wall times, in milliseconds, under names that begin with `name`."""
-    times = 1e3 * np.asarray(seconds if len(seconds) else [0.0])
-    figures = {"median": np.median(times), "p95": np.percentile(times, 95), "max": times.max()}
-    return {f"{name}_{figure}_ms": float(value) for figure, value in figures.items()}
+def timing(*, wall_seconds: float, mpc_seconds: Sequence[float], plan_seconds: Sequence[float]) -> dict[str, float]:
+    """What an episode took to compute: wall seconds in all, and milliseconds a solve of the MPC and of the planner.
+
+    Args:
+        wall_seconds: of the whole episode.
+        mpc_seconds: of each solve; figures of none are 0.
+        plan_seconds: of each replanning; figures of none are 0.
+    """
+    mpc, plan = (1e3 * np.asarray(seconds if len(seconds) else [0.0]) for seconds in (mpc_seconds, plan_seconds))
+    return {
+        "wall_s": wall_seconds,
+        "mpc_median_ms": float(np.median(mpc)),
+        "mpc_p95_ms": float(np.percentile(mpc, 95)),
+        "mpc_max_ms": float(mpc.max()),
+        "plan_median_ms": float(np.median(plan)),
+        "plan_p95_ms": float(np.percentile(plan, 95)),
+    }
 
 
 def plan_variant(actions: Sequence[str]) -> str:
@@ -100,13 +129,33 @@ def plan_variant(actions: Sequence[str]) -> str:
     return "/".join((pharmacy, supply, "-".join(order) or "none", side))
 
 
+def check_writable(path: Path) -> None:
+    """Makes the folder of a file to be written later, and finds out whether that file can be written there.
+
+    Raises:
+        BadInput: when it cannot.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(str(path), f"its folder cannot be made ({error.strerror})", "a writable folder") from None
+    if path.is_dir():
+        raise BadInput(str(path), "is a folder", "the name of a file")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise BadInput(str(path), "cannot be written (permission denied)", "a writable file")
+
+
 class EpisodeFile:
     """Appends records to `episodes.jsonl`, each on the disk before the next episode begins."""
 
     def __init__(self, folder: Path) -> None:
-        """Starts an empty file in `folder`, which is made if it is missing."""
-        folder.mkdir(parents=True, exist_ok=True)
-        self.path = folder / "episodes.jsonl"
+        """Starts an empty file in `folder`, which is made if it is missing.
+
+        Raises:
+            BadInput: when the file cannot be written.
+        """
+        self.path = folder / EPISODES_FILE
+        check_writable(self.path)
         self._file = self.path.open("w", encoding="utf-8")
 
     def append(self, record: EpisodeRecord) -> None:

@@ -6,9 +6,19 @@ from typing import Any
 
 from pydrake.systems.framework import Context, Diagram
 
-from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, milliseconds, plan_variant
+from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, plan_variant, timing
 from mala_drake.learning.convergence import preference_distance
-from mala_drake.messages import Action, ActionKind, ActionReport, EpisodeReport, Outcome, Preferences, Ratings
+from mala_drake.messages import (
+    Action,
+    ActionKind,
+    ActionReport,
+    EpisodeReport,
+    Outcome,
+    Preferences,
+    Ratings,
+    TaskReport,
+)
+from mala_drake.preferences import CRITERIA
 from mala_drake.scenario import Scenario
 
 
@@ -66,36 +76,33 @@ class EpisodeWatch:
 
     def record(self, *, wall_seconds: float) -> EpisodeRecord:
         """The record of the episode, failed for lack of time when it has not finished."""
-        report: EpisodeReport = self._read("feature_meter", "episode_report")
+        report = self._report()
         ratings: Ratings = self._read("patient", "ratings")
         after: Preferences = self._read("preference_learner", "preferences")
         safety = self._read("safety_monitor", "safety")
-        done = report.sequence == self._episode + 1
-        if not done:
-            report = EpisodeReport(failure="the time of the episode was up")
-        success = done and report.success
+        legs = [*self._legs, *self._leg_under_way()]
         return EpisodeRecord(
             episode=self._episode,
             task=report.task or self._scenario.task,
             profile=self._scenario.profile_name,
             seed=self._scenario.random_seed,
-            success=success,
-            failure=None if success else (report.failure or "unknown"),
+            success=report.success,
+            failure=None if report.success else (report.failure or "unknown"),
             actions=self._actions,
             plan_variant=plan_variant(self._actions),
             plan_cost=report.plan_cost,
             replans=report.replans,
             features=by_criterion(report.features),
             predicted_features=by_criterion(report.predicted_features),
-            ratings=list(ratings.values) if done else [None] * 5,
+            ratings=list(ratings.values) if ratings.sequence == self._episode + 1 else [None] * len(CRITERIA),
             weights_before=list(self._before.estimate),
             weights_after=list(after.estimate),
             weights_std=None if after.deviation is None else list(after.deviation),
             distance_to_true=preference_distance(after.estimate, self._scenario.true_weights),
             sim_time_s=self._context.get_time() - self._started,
             solver=self._scenario.control.solver,
-            mpc_solves=sum(leg.solves for leg in self._legs),
-            mpc_failures=sum(leg.failures for leg in self._legs),
+            mpc_solves=sum(leg.solves for leg in legs),
+            mpc_failures=sum(leg.failures for leg in legs),
             min_clearance_m=float(safety[0]),
             collisions=int(safety[1]),
             terminal_errors_m=[leg.position_error for leg in self._legs],
@@ -105,12 +112,33 @@ class EpisodeWatch:
             mismatches=report.mismatches,
             battery_start=self._charge_before,
             battery_end=self._charge(),
-            timing={
-                "wall_s": wall_seconds,
-                **milliseconds("mpc", self._controller.solve_seconds[self._solves :]),
-                **milliseconds("plan", self._planner.solve_seconds[self._plans :]),
-            },
+            timing=timing(
+                wall_seconds=wall_seconds,
+                mpc_seconds=self._controller.solve_seconds[self._solves :],
+                plan_seconds=self._planner.solve_seconds[self._plans :],
+            ),
         )
+
+    def _report(self) -> EpisodeReport:
+        """What became of the task; when it is still being worked on, what has come of it so far."""
+        report: EpisodeReport = self._read("feature_meter", "episode_report")
+        if report.sequence == self._episode + 1:
+            return report
+        unfinished: TaskReport = self._read("task_planner", "task_report")
+        return EpisodeReport(
+            task=self._read("scheduler", "task").name,
+            failure="the time of the episode was up",
+            features=tuple(self._read("feature_meter", "features")),
+            predicted_features=unfinished.predicted_features,
+            plan_cost=unfinished.plan_cost,
+            replans=unfinished.replans,
+            mismatches=unfinished.mismatches,
+        )
+
+    def _leg_under_way(self) -> list[ActionReport]:
+        """The leg that the end of the episode's time cuts short, if there is one."""
+        report: ActionReport = self._read("mpc_controller", "leg_report")
+        return [report] if report.sequence > 0 and not report.finished else []
 
 
 def describe(action: Action) -> str:

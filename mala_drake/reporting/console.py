@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -21,6 +25,7 @@ class RunConsole:
     def __init__(self, scenario: Scenario, *, quiet: bool) -> None:
         """Shows `scenario`; quiet leaves nothing but what the caller prints itself."""
         self._scenario = scenario
+        self._last: EpisodeRecord | None = None
         self._errors = Console(stderr=True, quiet=quiet)
         self._output = Console(quiet=quiet)
         self._progress = Progress(
@@ -31,6 +36,7 @@ class RunConsole:
             TextColumn("{task.description}"),
             console=self._errors,
             transient=True,
+            disable=not self._errors.is_terminal,  # In a file or a pipe, a line for each episode says enough.
         )
         self._bar = self._progress.add_task("starting", total=scenario.episodes)
 
@@ -45,48 +51,78 @@ class RunConsole:
 
     def on_action(self, episode: int, seconds: float, text: str) -> None:
         """Shows what the robot does now."""
-        self._progress.update(self._bar, description=f"episode {episode + 1}, {seconds:5.1f} s: {text}")
+        self._progress.update(self._bar, description=escape(f"episode {episode + 1}, {seconds:5.1f} s: {text}"))
 
     def on_episode(self, record: EpisodeRecord) -> None:
         """Prints a line for an episode that has ended."""
+        self._last = record
         self._progress.advance(self._bar)
-        verdict = "[green]delivered[/]" if record.success else f"[red]failed: {record.failure}[/]"
+        verdict = "[green]delivered[/]" if record.success else f"[red]failed: {escape(str(record.failure))}[/]"
         self._errors.print(
-            f"episode {record.episode + 1}: {verdict} in {record.sim_time_s:.1f} s by {record.plan_variant}, "
-            f"clearance {record.min_clearance_m:.2f} m, distance to true preferences {record.distance_to_true:.3f} "
-            f"[dim]({record.timing['wall_s']:.1f} s of computing)[/]"
+            f"episode {record.episode + 1}: {verdict}, {record.sim_time_s:.1f} s by {record.plan_variant}, "
+            f"clearance {_number(record.min_clearance_m, 2)} m, preferences off by {record.distance_to_true:.3f} "
+            f"[dim](computed in {record.timing['wall_s']:.1f} s)[/]",
+            highlight=False,
+            soft_wrap=True,
         )
 
     def show(self, summary: dict[str, Any]) -> None:
-        """Prints the summary of a run."""
+        """Prints the summary of a run: its figures, the last episode's actions, and what has been learned."""
         self._progress.stop()
-        totals, timing = summary["totals"], summary["timing"]
         for name, figures in summary["profiles"].items():
-            table = Table(title=f"{self._scenario.task}, patient {name}", show_header=False, title_justify="left")
-            table.add_row("episodes delivered", f"{totals['successes']} of {totals['episodes']}")
-            table.add_row("collisions", str(totals["collisions"]))
-            table.add_row("least clearance of the body", f"{totals['min_clearance_m']:.3f} m")
-            if totals["max_terminal_error_m"] is not None:
-                worst = f"{totals['max_terminal_error_m']:.3f} m, {totals['max_terminal_yaw_error_rad']:.3f} rad"
-                table.add_row("worst stop of a leg", f"{worst}, {totals['max_terminal_speed_m_s']:.3f} m/s")
-            table.add_row("plans", ", ".join(figures["plan_variants"]) or "none")
-            table.add_row("distance to true preferences", f"{figures['final_distance']:.3f} (last episode)")
-            table.add_row("MPC solves", f"{totals['mpc_solves']}, {totals['mpc_failures']} failed")
-            table.add_row("median time of a solve", f"{timing['mpc_median_ms']:.1f} ms")
-            table.add_row("median time of an episode", f"{timing['median_episode_wall_s']:.1f} s")
-            self._output.print(table)
+            title = f"{self._scenario.task}, patient {name.replace('_', ' ')}"
+            self._output.print(_figures_table(title, summary["totals"], summary["timing"], figures))
+        if self._last is not None:
+            self._output.print(f"Executed in episode {self._last.episode + 1}:", highlight=False)
+            self._output.print("  " + " → ".join(map(_words, self._last.actions)), highlight=False, markup=False)
+            self._output.print(weights_table(self._last, self._scenario.true_weights))
 
-    def tell(self, text: str) -> None:
-        """Prints a line of plain text."""
-        self._output.print(text, highlight=False, soft_wrap=True)
+    def show_files(self, paths: Iterable[Path]) -> None:
+        """Prints where the files of a run are."""
+        for path in paths:
+            self._output.print(f"wrote {path}", markup=False, highlight=False, soft_wrap=True)
 
 
-def weights_table(estimate: Sequence[float], true: Sequence[float]) -> Table:
-    """Learned against true preference weights."""
-    table = Table("criterion", "learned", "true")
-    for criterion, learned, wanted in zip(CRITERIA, estimate, true, strict=True):
-        table.add_row(criterion, f"{learned:.2f}", f"{wanted:.2f}")
+def _figures_table(title: str, totals: dict[str, Any], timing: dict[str, Any], figures: dict[str, Any]) -> Table:
+    table = Table(title=title, show_header=False, title_justify="left")
+    table.add_row("episodes delivered", f"{totals['successes']} of {totals['episodes']}")
+    for failure, count in Counter(totals["failures"]).items():
+        table.add_row("failed", escape(f"{count} x {failure}"))
+    table.add_row("collisions", str(totals["collisions"]))
+    table.add_row("least clearance of the body", f"{_number(totals['min_clearance_m'], 3)} m")
+    if totals["max_terminal_error_m"] is not None:
+        worst = f"{totals['max_terminal_error_m']:.3f} m, {totals['max_terminal_yaw_error_rad']:.3f} rad"
+        table.add_row("worst end of a leg", f"{worst}, {totals['max_terminal_speed_m_s']:.3f} m/s")
+    table.add_row("plans that delivered", "\n".join(figures["plan_variants"]) or "none")
+    table.add_row("rated episodes to convergence", str(figures["convergence_episode"] or "not yet converged"))
+    table.add_row(
+        "distance to true preferences", f"{figures['final_distance']:.3f} (best {figures['best_distance']:.3f})"
+    )
+    table.add_row("MPC solves", f"{totals['mpc_solves']}, {totals['mpc_failures']} failed")
+    table.add_row("median time of a solve", f"{timing['mpc_median_ms']:.1f} ms")
+    table.add_row("median time of an episode", f"{timing['median_episode_wall_s']:.1f} s")
     return table
+
+
+def weights_table(record: EpisodeRecord, true_weights: Sequence[float]) -> Table:
+    """Learned against true preference weights, with the features and ratings of the episode learned from last."""
+    table = Table("criterion", title="preferences", title_justify="left")
+    for heading in ("learned", "true", "feature", "rating"):
+        table.add_column(heading, justify="right")
+    rows = zip(CRITERIA, record.weights_after, true_weights, record.ratings, strict=True)
+    for criterion, learned, wanted, rating in rows:
+        feature, given = record.features[criterion], "-" if rating is None else f"{rating:.2f}"
+        table.add_row(criterion, f"{learned:.3f}", f"{wanted:.3f}", f"{feature:.3f}", given)
+    return table
+
+
+def _words(action: str) -> str:
+    """A PDDL action for people: `(go_to_supply_a robot1 home supply_a)` is `go to supply a`."""
+    return action.strip("()").split()[0].replace("_", " ")
+
+
+def _number(value: float | None, digits: int) -> str:
+    return "-" if value is None or not math.isfinite(value) else f"{value:.{digits}f}"
 
 
 def print_rows(title: str, rows: Sequence[dict[str, Any]]) -> None:
