@@ -36,6 +36,8 @@ _USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]
 
 _SEARCHES: tuple[SearchName, ...] = ("astar", "ucs")
 
+_WEIGHT_FLUENTS = ("(w0)", "(w1)", "(w2)", "(w3)", "(w4)")
+
 _OPTION_OF = {
     "task": "--task",
     "patient.profile": "--profile",
@@ -134,7 +136,13 @@ def plan(
         raise BadInput("--search", repr(search), "one of " + ", ".join(_SEARCHES))
     from mala_drake.planning import plan_to_json, solve_files
 
-    found = solve_files(domain, problem, weights=values, timeout=timeout, search=chosen)
+    try:
+        found = solve_files(domain, problem, weights=values, timeout=timeout, search=chosen)
+    except BadInput as error:
+        if values is not None and error.where in _WEIGHT_FLUENTS:
+            what = f"{domain} declares no fluent {error.where}"
+            raise BadInput("--weights", what, "a domain with " + " ".join(_WEIGHT_FLUENTS)) from None
+        raise
     result = plan_to_json(found)
     if as_json:
         typer.echo(json.dumps(result))

@@ -64,12 +64,17 @@ def _check_value(kind: Any, value: Any, at: str) -> None:
             raise BadInput(at, f"{value!r}", "a list")
         for i, element in enumerate(value):
             _check_value(get_args(kind)[0], element, f"{at}[{i}]")
+    elif kind is float and isinstance(value, str) and _EXPONENTIAL.fullmatch(value):
+        return
     elif kind in _EXPECTED:
         accepted, expected = _EXPECTED[kind]
         # A bool is an int to Python, but not to a reader of the file.
         if not isinstance(value, accepted) or (isinstance(value, bool) and kind is not bool):
             raise BadInput(at, f"{value!r}", expected)
 
+
+# PyYAML takes 1e-3 for text, unlike YAML 1.2; Drake's reader makes a number of it.
+_EXPONENTIAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)[eE][+-]?\d+")
 
 _EXPECTED: dict[Any, tuple[tuple[type, ...], str]] = {
     bool: ((bool,), "true or false"),

@@ -235,8 +235,8 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
     )
     for name, value, low, high in ranges:
         if not low <= value <= high:
-            limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:g}"
-            raise BadInput(at + name, f"{value:g}", limits)
+            limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:.10g}"
+            raise BadInput(at + name, f"{value:.10g}", limits)
 
 
 def _checked_ward(scenario: Scenario, at: str) -> Ward:

@@ -1,0 +1,227 @@
+"""Scenarios: the defaults can be simulated, and every field that cannot is named in one line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+import pytest
+import yaml
+
+from mala_drake import scenario as mut
+from mala_drake.errors import BadInput
+from mala_drake.patient.profiles import PROFILES
+from mala_drake.resources import models_folder
+from mala_drake.ward.routes import BODY_RADIUS
+
+
+def load(tmp_path, text):
+    path = tmp_path / "mine.scenario.yaml"
+    path.write_text(text, encoding="utf-8")
+    return mut.LoadScenario(path)
+
+
+def refusal(tmp_path, text):
+    with pytest.raises(BadInput) as caught:
+        load(tmp_path, text)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def numbers_of(value, prefix=""):
+    """Every float field of a scenario, as (its owner, its name, its dotted name)."""
+    for item in fields(value):
+        entry = getattr(value, item.name)
+        if is_dataclass(entry):
+            yield from numbers_of(entry, f"{prefix}{item.name}.")
+        elif isinstance(entry, float):
+            yield prefix, item.name
+
+
+def set_number(scenario, prefix, name, number):
+    for part in prefix.split(".")[:-1]:
+        scenario = getattr(scenario, part)
+    setattr(scenario, name, number)
+
+
+NUMBERS = sorted(numbers_of(mut.Scenario()))
+
+
+def test_the_default_scenario_is_two_medication_episodes():
+    scenario = mut.LoadScenario()
+    assert (scenario.task, scenario.episodes, scenario.random_seed) == ("medication", 2, 0)
+    assert scenario.true_weights == PROFILES["speed_oriented"]
+
+
+def test_an_empty_file_is_the_default_scenario(tmp_path):
+    assert load(tmp_path, "") == mut.Scenario()
+
+
+def test_true_weights_replace_the_profile(tmp_path):
+    scenario = load(tmp_path, "patient: {true_weights: [0.2, 0.2, 0.2, 0.2, 0.2]}")
+    assert scenario.true_weights == (0.2,) * 5
+    assert scenario.profile_name == "custom"
+
+
+def test_obstacles_are_shapes_seen_from_above(tmp_path):
+    text = "world: {obstacles: [{name: cart, x: 3, y: 4, yaw: 0.5, half_length: 0.7, half_width: 0.2}]}"
+    (shape,) = load(tmp_path, text).unmapped_shapes
+    assert (shape.name, shape.x, shape.y, shape.yaw, shape.half_length, shape.half_width) == (
+        "cart",
+        3.0,
+        4.0,
+        0.5,
+        0.7,
+        0.2,
+    )
+
+
+def test_numbers_may_have_exponents(tmp_path):
+    assert load(tmp_path, "learner: {learning_rate: 1e-3}").learner.learning_rate == 1e-3
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize(("prefix", "name"), NUMBERS)
+def test_no_number_may_be_infinite_or_undefined(prefix, name, number):
+    scenario = mut.Scenario()
+    set_number(scenario, prefix, name, number)
+    with pytest.raises(BadInput, match=rf"here: {prefix}{name}: -?(nan|inf); expected a finite number"):
+        mut.Validate(scenario, where="here")
+
+
+@pytest.mark.parametrize(("prefix", "name"), NUMBERS)
+def test_no_number_may_be_negative(prefix, name):
+    scenario = mut.Scenario()
+    set_number(scenario, prefix, name, -0.5)
+    with pytest.raises(BadInput, match=rf"here: {prefix}{name}: -0\.5; expected"):
+        mut.Validate(scenario, where="here")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("episodes: 0", ["episodes: 0", "from 1 to 1000000"]),
+        ("episodes: 2.5", ["episodes: 2.5", "a whole number"]),
+        ("random_seed: -1", ["random_seed: -1", ">= 0"]),
+        ("task: dance", ["task: 'dance'", "medication"]),
+        ("patient: {profile: nobody}", ["patient.profile: 'nobody'", "speed_oriented", "safety_first"]),
+        ("control: {solver: guess}", ["control.solver: 'guess'", "snopt", "ipopt"]),
+        ("control: {horizon: 1}", ["control.horizon: 1", "from 2"]),
+        ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
+        ("robot: {initial_charge: 1.5}", ["robot.initial_charge: 1.5", "from 0 to 1"]),
+        ("world: {wrong_item_probability: 2}", ["world.wrong_item_probability: 2", "from 0 to 1"]),
+        ("world: {wrong_items: [candy]}", ["world.wrong_items[0]: 'candy'", "med_antibiotic"]),
+        ("patient: {true_weights: [0.5, 0.5]}", ["patient.true_weights: 2 weights", "5"]),
+        ("patient: {true_weights: [0.5, 0.5, 0.5, 0, 0]}", ["patient.true_weights", "1.5", "expected 1"]),
+        ("patient: {true_weights: [1.5, -0.5, 0, 0, 0]}", ["patient.true_weights.safety", "-0.5"]),
+        ("patient: {true_weights: [.nan, 1, 0, 0, 0]}", ["patient.true_weights[0]: nan", "finite"]),
+        ("learner: {initial_weights: [1, 1, 0, 0, 0]}", ["learner.initial_weights", "sum", "2"]),
+        ("world: {obstacles: [{x: .inf}]}", ["world.obstacles[0].x: inf", "finite"]),
+        ("world: {obstacles: [{x: 0.3, y: 0.1}]}", ["world.obstacles[0]", "robot at home"]),
+        ("world: {obstacles: [{x: 5, height: 0}]}", ["world.obstacles[0]", "above 0"]),
+        ("world: {obstacles: [{x: 5}, {x: 9}]}", ["world.obstacles[1].name: 'trolley'", "no other obstacle"]),
+        ("ward: nowhere.ward.yaml", ["ward", "nowhere.ward.yaml", "path of a ward map"]),
+        ("robto: {}", ["robto: unknown key", "robot"]),
+    ],
+)
+def test_a_mistake_in_the_file_is_named(tmp_path, text, words):
+    line = refusal(tmp_path, text)
+    assert line.startswith("mine.scenario.yaml: ")
+    for word in words:
+        assert word in line
+
+
+@pytest.fixture(scope="module")
+def plain_map():
+    return (models_folder() / "care_center.ward.yaml").read_text(encoding="utf-8")
+
+
+def with_map(tmp_path, text):
+    """The text of a scenario in the ward of that map."""
+    (tmp_path / "mine.ward.yaml").write_text(text, encoding="utf-8")
+    return "ward: mine.ward.yaml"
+
+
+def changed(text, change):
+    ward = yaml.safe_load(text)
+    change(ward)
+    return yaml.safe_dump(ward)
+
+
+def move(name, x, y):
+    def change(ward):
+        place = next(place for place in ward["places"] if place["name"] == name)
+        place.update(x=x, y=y)
+
+    return change
+
+
+def test_a_ward_is_found_from_the_scenario_s_own_folder(tmp_path, plain_map):
+    assert load(tmp_path, with_map(tmp_path, plain_map)).load_ward() == mut.Scenario().load_ward()
+
+
+@pytest.mark.parametrize(
+    ("name", "x", "y", "solid"),
+    [
+        ("pharmacy_north", 5.0, 19.3, "pharmacy_north_cabinet"),  # Where its own cabinet stands.
+        ("patient_bed_left", 21.0, 9.0, "bed"),
+        ("pantry", -1.0, 12.2, "kitchen_wall_middle"),
+        ("fridge", -24.7, 17.0, "wall_west"),
+        ("charge_main", 24.9, 24.9, "wall_"),
+    ],
+)
+def test_a_place_where_the_robot_does_not_fit_is_refused(tmp_path, plain_map, name, x, y, solid):
+    line = refusal(tmp_path, with_map(tmp_path, changed(plain_map, move(name, x, y))))
+    for word in ("mine.ward.yaml: places[", name, solid, str(BODY_RADIUS)):
+        assert word in line
+
+
+def test_a_place_may_be_as_near_to_furniture_as_the_robot_is_wide(tmp_path, plain_map):
+    east_face_of_fridge = -4.9 - 0.5
+    near = changed(plain_map, move("fridge", east_face_of_fridge - BODY_RADIUS - 0.01, 17.5))
+    load(tmp_path, with_map(tmp_path, near))
+    too_near = changed(plain_map, move("fridge", east_face_of_fridge - BODY_RADIUS + 0.01, 17.5))
+    assert "fridge_body is 0.27 m" in refusal(tmp_path, with_map(tmp_path, too_near))
+
+
+def test_the_ward_that_comes_with_the_package_leaves_half_a_metre_everywhere():
+    ward = mut.Scenario().load_ward()
+    distances = mut.ShapeDistances(ward.shapes)
+    assert np.min(distances([[place.x, place.y] for place in ward.places])) >= 0.5
+
+
+def no_home(ward):
+    ward["places"][0]["category"] = "kitchen"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (no_home, ["places", "home"]),
+        (lambda ward: ward["places"][2].update(x=math.nan), ["places[2].x", "nan", "finite"]),
+        (lambda ward: ward["places"][2].update(x="east"), ["places[2].x", "east"]),
+        (lambda ward: ward["places"][2].pop("y"), ["places[2]", "y"]),
+        (lambda ward: ward["places"][2].update(x=99.0), ["places[2]", "inside the ward"]),
+        (lambda ward: ward["places"][2].update(category="cellar"), ["places[2].category", "cellar"]),
+        (lambda ward: ward["places"].append(ward["places"][0]), ["home", "2 times", "unique"]),
+        (lambda ward: ward["furniture"][0].update(model="piano"), ["model", "piano"]),
+        (lambda ward: ward["furniture"][0].update(height=-1.0), ["height", "-1"]),
+        (lambda ward: ward["furniture"][0].update(serves="cellar"), ["furniture[0].serves", "cellar"]),
+        (lambda ward: ward["zones"][0].update(level=1.5), ["zones[0].level", "1.5"]),
+        (lambda ward: ward["zones"][0].update(polygon=[[0, 0]]), ["zones[0].polygon", "3"]),
+        (lambda ward: ward.pop("half_extent"), ["half_extent"]),
+        (lambda ward: ward.update(half_extent=-1.0), ["half_extent", "positive"]),
+        (lambda ward: ward.update(places={}), ["places", "a list"]),
+        (lambda ward: ward.update(doors=[]), ["doors", "unknown key"]),
+    ],
+)
+def test_a_mistake_in_the_map_is_named(tmp_path, plain_map, change, words):
+    line = refusal(tmp_path, with_map(tmp_path, changed(plain_map, change)))
+    for word in words:
+        assert word in line
+
+
+@pytest.mark.parametrize("text", ["{{{", "- a\n- b\n", "", "places: 3", "\x00"])
+def test_what_is_no_map_is_refused(tmp_path, text):
+    assert "mine.ward.yaml" in refusal(tmp_path, with_map(tmp_path, text))
