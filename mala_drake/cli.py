@@ -38,6 +38,8 @@ _SEARCHES: tuple[SearchName, ...] = ("astar", "ucs")
 
 _WEIGHT_FLUENTS = ("(w0)", "(w1)", "(w2)", "(w3)", "(w4)")
 
+_INTERRUPTED = 130  # What a shell calls a program ended by Control-C.
+
 _OPTION_OF = {
     "task": "--task",
     "patient.profile": "--profile",
@@ -220,7 +222,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     except _USAGE_ERROR as error:
         _end(_usage(error), 2)
     except (KeyboardInterrupt, typer.Abort):
-        _end("interrupted; what was written before stays", 130)
+        status = _INTERRUPTED
+    if status == _INTERRUPTED:  # Newer versions of typer return it, older ones raise Abort.
+        _end("interrupted; what was written before stays", _INTERRUPTED)
     sys.exit(status or 0)
 
 

@@ -255,7 +255,7 @@ def test_a_mistake_in_pddl_names_file_and_line(capfd, lamp, domain, words):
 
 def test_benchmark_rows_are_json_or_a_table(capfd, monkeypatch):
     rows = {"plan": [{"search": "astar", "median_ms": 1.5}]}
-    monkeypatch.setattr("mala_drake.experiments.bench.run_benchmarks", lambda name: rows)
+    monkeypatch.setattr("mala_drake.experiments.bench.run_benchmarks", {"plan": rows}.get)
     status, output, errors = call(capfd, "bench", "plan", "--json")
     assert (status, json.loads(output), errors) == (0, rows, "")
     status, output, _ = call(capfd, "bench", "plan")
@@ -293,7 +293,7 @@ def test_a_mistake_in_its_own_process_leaves_no_traceback(tmp_path):
 
 
 def test_the_same_seed_gives_the_same_bytes_whatever_the_hash_seed(tmp_path):
-    (tmp_path / "short.yaml").write_text("episodes: 2\nepisode_time_limit: 15\nrobot: {position_noise: 0.005}\n")
+    (tmp_path / "short.yaml").write_text("episodes: 1\nepisode_time_limit: 15\nrobot: {position_noise: 0.005}\n")
     lines = {}
     for seed in ("1", "2"):
         done = process("run", "short.yaml", "--out", f"out{seed}", folder=tmp_path, PYTHONHASHSEED=seed)
@@ -302,5 +302,5 @@ def test_the_same_seed_gives_the_same_bytes_whatever_the_hash_seed(tmp_path):
         text = (tmp_path / f"out{seed}" / "episodes.jsonl").read_text()
         records = [json.loads(line) for line in text.splitlines()]
         lines[seed] = [json.dumps({**record, "timing": None}) for record in records]
-    assert len(lines["1"]) == 2
+    assert len(lines["1"]) == 1
     assert lines["1"] == lines["2"]

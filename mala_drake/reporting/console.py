@@ -10,9 +10,9 @@ from types import TracebackType
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
+from rich.text import Text
 
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.preferences import CRITERIA
@@ -33,7 +33,7 @@ class RunConsole:
             BarColumn(bar_width=20),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             console=self._errors,
             transient=True,
             disable=not self._errors.is_terminal,  # In a file or a pipe, a line for each episode says enough.
@@ -51,20 +51,21 @@ class RunConsole:
 
     def on_action(self, episode: int, seconds: float, text: str) -> None:
         """Shows what the robot does now."""
-        self._progress.update(self._bar, description=escape(f"episode {episode + 1}, {seconds:5.1f} s: {text}"))
+        self._progress.update(self._bar, description=f"episode {episode + 1}, {seconds:5.1f} s: {text}")
 
     def on_episode(self, record: EpisodeRecord) -> None:
         """Prints a line for an episode that has ended."""
         self._last = record
         self._progress.advance(self._bar)
-        verdict = "[green]delivered[/]" if record.success else f"[red]failed: {escape(str(record.failure))}[/]"
-        self._errors.print(
-            f"episode {record.episode + 1}: {verdict}, {record.sim_time_s:.1f} s by {record.plan_variant}, "
-            f"clearance {_number(record.min_clearance_m, 2)} m, preferences off by {record.distance_to_true:.3f} "
-            f"[dim](computed in {record.timing['wall_s']:.1f} s)[/]",
-            highlight=False,
-            soft_wrap=True,
+        # Assembled, not marked up: a failure may have brackets of its own.
+        line = Text.assemble(
+            f"episode {record.episode + 1}: ",
+            ("delivered", "green") if record.success else (f"failed: {record.failure}", "red"),
+            f", {record.sim_time_s:.1f} s by {record.plan_variant}, clearance {_number(record.min_clearance_m, 2)} m, "
+            f"preferences off by {record.distance_to_true:.3f} ",
+            (f"(computed in {record.timing['wall_s']:.1f} s)", "dim"),
         )
+        self._errors.print(line, soft_wrap=True)
 
     def show(self, summary: dict[str, Any]) -> None:
         """Prints the summary of a run: its figures, the last episode's actions, and what has been learned."""
@@ -87,7 +88,7 @@ def _figures_table(title: str, totals: dict[str, Any], timing: dict[str, Any], f
     table = Table(title=title, show_header=False, title_justify="left")
     table.add_row("episodes delivered", f"{totals['successes']} of {totals['episodes']}")
     for failure, count in Counter(totals["failures"]).items():
-        table.add_row("failed", escape(f"{count} x {failure}"))
+        table.add_row("failed", Text(f"{count} x {failure}"))
     table.add_row("collisions", str(totals["collisions"]))
     table.add_row("least clearance of the body", f"{_number(totals['min_clearance_m'], 3)} m")
     if totals["max_terminal_error_m"] is not None:

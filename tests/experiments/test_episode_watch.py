@@ -1,0 +1,87 @@
+"""Watching an episode: what is new is told once, and watching changes nothing."""
+
+from __future__ import annotations
+
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from mala_drake.clock import TICK
+from mala_drake.experiments import episode_watch as mut
+from mala_drake.messages import Action, ActionKind
+from mala_drake.scenario import Scenario
+from mala_drake.station import MakeCareStation, StartEpisode
+
+SECONDS = 6.0
+
+
+@pytest.fixture(scope="module")
+def station():
+    return MakeCareStation(Scenario(episodes=1))
+
+
+def state_after(station, *, watched):
+    """Everything the station knows after some seconds, and the watch."""
+    context = station.CreateDefaultContext()
+    StartEpisode(station, context, episode=0)
+    simulator = Simulator(station, context)
+    simulator.Initialize()
+    watch = mut.EpisodeWatch(station, context, Scenario(episodes=1), 0)
+    news = []
+    for tick in range(1, round(SECONDS / TICK) + 1):
+        simulator.AdvanceTo(tick * TICK)
+        if watched:
+            news += watch.look()
+            assert not watch.finished
+    plant = station.GetSubsystemByName("plant")
+    state = plant.GetPositionsAndVelocities(plant.GetMyContextFromRoot(context))
+    return state, watch, news, context
+
+
+def test_watching_changes_nothing_and_tells_each_action_once(station):
+    state, _, news, _ = state_after(station, watched=True)
+    unwatched, *_ = state_after(station, watched=False)
+    assert state.tolist() == unwatched.tolist()
+    assert len(news) == 1
+    assert news[0].startswith("drive to pharmacy ")
+
+
+def test_an_episode_cut_short_is_a_failure_with_what_was_measured_so_far(station):
+    _, watch, _, context = state_after(station, watched=True)
+    record = watch.record(wall_seconds=1.5)
+    meter = station.GetSubsystemByName("feature_meter")
+    measured = meter.GetOutputPort("features").Eval(meter.GetMyContextFromRoot(context))
+    controller = station.GetSubsystemByName("mpc_controller")
+    assert not record.success
+    assert "time" in record.failure
+    assert list(record.features.values()) == measured.tolist()
+    assert record.features["time"] > 0.0
+    assert record.task == "medication"
+    assert record.plan_cost > 0.0
+    assert record.ratings == [None] * 5
+    assert record.weights_after == record.weights_before
+    assert record.sim_time_s == pytest.approx(SECONDS)
+    assert record.timing["wall_s"] == 1.5
+    # The leg under way counts: there was a solve each tick but the first ones.
+    assert SECONDS / TICK - 3 <= record.mpc_solves <= SECONDS / TICK
+    assert record.mpc_solves <= len(controller.solve_seconds)
+    assert record.terminal_errors_m == []
+    assert record.battery_end < record.battery_start == 1.0
+
+
+@pytest.mark.parametrize(
+    ("action", "words"),
+    [
+        (Action(1, ActionKind.MOVE, "go_to_supply_a", ("robot1", "home"), place="supply_A"), "drive to supply A"),
+        (
+            Action(1, ActionKind.IN_PLACE, "collect_med_insulin", (), place="pharmacy_north"),
+            "collect med insulin at pharmacy north",
+        ),
+        (
+            Action(1, ActionKind.IN_PLACE, "deliver_on_bedside_table_left", (), place="patient_bed_left"),
+            "deliver on bedside table left",
+        ),
+        (Action(1, ActionKind.IN_PLACE, "wait"), "wait"),
+    ],
+)
+def test_actions_are_told_in_words(action, words):
+    assert mut.describe(action) == words
