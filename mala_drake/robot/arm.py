@@ -10,13 +10,13 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 from mala_drake.clock import CONTROL_OFFSET, TICK
 from mala_drake.messages import ArmCommand, Message
 from mala_drake.robot.arm_kinematics import STOWED, joints_for_gripper
-from mala_drake.robot.joint_motion import JointMotion
+from mala_drake.robot.arm_motion import ArmMotion
 
 
 @dataclass(frozen=True, slots=True)
 class _Moving(Message):
     command: ArmCommand = ArmCommand()
-    motion: JointMotion = JointMotion()
+    motion: ArmMotion = ArmMotion()
     reachable: bool = True
 
 
@@ -35,7 +35,8 @@ class Arm(LeafSystem):
 
     `arm_target` is an `ArmCommand`. `desired_state` are the positions, rad, and the velocities, rad/s, of the
     three joints for the `desired_state` port of the arm: a smooth joint motion towards the target, all joints arriving
-    together, never faster than `mala_drake.robot.joint_motion.MAX_SPEED` from rest. `reachable` is 1, or 0 when the
+    together, never faster than `mala_drake.robot.joint_motion.MAX_SPEED`; a target that comes in the middle of a motion
+    makes it brake first. `reachable` is 1, or 0 when the
     target is out of reach or not finite: the arm then keeps the goal it had. `moving` is 1 until the set point has
     arrived.
 
@@ -73,4 +74,4 @@ class Arm(LeafSystem):
 
     def _calc_moving(self, context: Context, output: BasicVector) -> None:
         motion = context.get_abstract_state(self._moving).get_value().motion
-        output.SetAtIndex(0, float(context.get_time() < motion.start_time + motion.duration))
+        output.SetAtIndex(0, float(context.get_time() < motion.end_time))

@@ -1,7 +1,7 @@
 """The arm's motions of the in-place actions, as data: where the gripper is, and when the magnet is on.
 
 An action runs through the phases of its motion by the fraction of its time that has passed. Fractions leave the arm
-time for its way: about 1.8 s between the deck and a ledge, 0.4 s down to a box.
+time for its way: about 1.8 s between the deck and a ledge, 0.5 s down to a box.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from enum import Enum
 from mala_drake.robot.arm_kinematics import Point
 from mala_drake.ward.in_place_actions import Verb
 
-HOVER_HEIGHT = 0.08
-"""Metres above its goal at which the gripper comes and goes."""
+HOVER_HEIGHT = 0.13
+"""Metres above its goal at which the gripper comes and goes: what hangs at it passes over boxes of 0.10 m."""
 
 CAMERA: Point = (0.30, 0.0, 1.06)
 """Where in the base frame the gripper shows a box to the camera above the robot's face."""
@@ -39,18 +39,18 @@ class Phase:
 
 MOTIONS: dict[Verb, tuple[Phase, ...]] = {
     Verb.COLLECT: (
-        Phase(0.40, Aim.HOVER, False),
+        Phase(0.38, Aim.HOVER, False),
         Phase(0.48, Aim.GOAL, False),
-        Phase(0.56, Aim.GOAL, True),
+        Phase(0.52, Aim.GOAL, True),
         Phase(0.64, Aim.HOVER, True),
         Phase(1.00, Aim.STOW, True),
     ),
     Verb.CHECK: (Phase(0.55, Aim.CAMERA, True), Phase(1.00, Aim.STOW, True)),
     Verb.PUT_DOWN: (
-        Phase(0.58, Aim.HOVER, True),
-        Phase(0.72, Aim.GOAL, True),
-        Phase(0.84, Aim.GOAL, False),
-        Phase(0.92, Aim.HOVER, False),
+        Phase(0.54, Aim.HOVER, True),
+        Phase(0.74, Aim.GOAL, True),
+        Phase(0.80, Aim.GOAL, False),
+        Phase(0.98, Aim.HOVER, False),
         Phase(1.00, Aim.STOW, False),
     ),
     Verb.DELIVER: (

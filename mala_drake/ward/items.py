@@ -29,7 +29,9 @@ KINDS = {
 _SHELF_AHEAD = 0.70  # Metres from the standing point along its yaw.
 # The box that hangs at the gripper's other pad is 0.14 m beside the one that is picked, and all are 0.06 m wide.
 _SHELF_ASIDE = (0.24, 0.0, -0.24)  # Metres to the left of the standing pose.
-_RETURN_ASIDE = (0.46, -0.46, 0.38, -0.38)  # The outer ones are the better ones, but not always within reach.
+# Where a box is put whose own place is taken. From 0.50 m on it is clear of a box carried along while another is picked
+# from the shelf; what is nearer is for an arm that does not reach so far.
+_RETURN_ASIDE = (0.50, -0.50, 0.46, -0.46, 0.38, -0.38)
 _TABLE_AHEAD = 0.76
 _TABLE_ASIDE = (0.14, -0.14)
 
@@ -63,12 +65,16 @@ def all_items(ward: Ward) -> tuple[Item, ...]:
     )
 
 
-def return_spots(ward: Ward, place: str) -> tuple[ItemPose, ...]:
-    """Where a box may be put back at `place`, the best first; empty where nothing is kept."""
+def return_spots(ward: Ward, place: str, kind: str) -> tuple[ItemPose, ...]:
+    """Where a box of `kind` may be put back at `place`, the best first; empty where nothing is kept.
+
+    The best is where that kind stands: the dispenser takes its box back there, and the shelf stays in order.
+    """
     standing = ward.place.get(place)
     if standing is None or standing.category not in KINDS:
         return ()
-    return tuple(_spot(standing, _SHELF_AHEAD, aside, LEDGE_HEIGHT) for aside in _RETURN_ASIDE)
+    own = [aside for kept, aside in zip(KINDS[standing.category], _SHELF_ASIDE, strict=True) if kept == kind]
+    return tuple(_spot(standing, _SHELF_AHEAD, aside, LEDGE_HEIGHT) for aside in (*own, *_RETURN_ASIDE))
 
 
 def table_spots(ward: Ward, place: str) -> tuple[ItemPose, ...]:

@@ -4,23 +4,24 @@ import math
 
 import pytest
 from pydrake.common.value import Value
-from pydrake.geometry import Box
-from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.plant import CoulombFriction
+from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.primitives import Demultiplexer
 
 from mala_drake.messages import Action, ActionKind, Outcome, Task
 from mala_drake.robot.arm import Arm
+from mala_drake.robot.arm_kinematics import PAD_OFFSETS
 from mala_drake.robot.battery import Battery
 from mala_drake.robot.drivetrain import Drivetrain
+from mala_drake.robot.gripper_geometry import HANGING_DEPTH
 from mala_drake.robot.in_place_executor import InPlaceExecutor
 from mala_drake.robot.item_positions import ItemPositions
 from mala_drake.robot.items import AddItems
 from mala_drake.robot.magnet import Magnet
-from mala_drake.robot.plant import AddCareRobot, AddFloor, MakeCarePlant, SetRobotPose, X_WB_at
+from mala_drake.robot.plant import AddCareRobot, MakeCarePlant, SetRobotPose, X_WB_at
 from mala_drake.robot.state_estimator import StateEstimator
+from mala_drake.robot.ward_plant import AddWard
 from mala_drake.robot.world import World
 from mala_drake.ward.items import LEDGE_HEIGHT, all_items
 from mala_drake.ward.ward_map import LoadWard
@@ -36,8 +37,7 @@ class Ward:
         builder = DiagramBuilder()
         self.plant, scene_graph = MakeCarePlant(builder)
         self.robot = AddCareRobot(self.plant, scene_graph)
-        AddFloor(self.plant)
-        self._add_surfaces()
+        AddWard(self.plant, self.ward, visible=False)
         self.items = AddItems(self.plant, scene_graph, all_items(self.ward), self.robot)
         self.plant.Finalize()
         self._wire(builder, options)
@@ -49,16 +49,6 @@ class Ward:
         self.diagram.GetInputPort("task").FixValue(self.context, Value(Task(1, "medication")))
         self.action = self.diagram.GetInputPort("action").FixValue(self.context, Value(Action()))
         self.sequence, self.place = 0, ""
-
-    def _add_surfaces(self):
-        """Ledges and tables as plain blocks of their footprint."""
-        for piece in self.ward.furniture:
-            if piece.serves in (NORTH, SUPPLY, RIGHT):
-                height = LEDGE_HEIGHT if piece.serves != RIGHT else piece.height
-                block = Box(2 * piece.half_length, 2 * piece.half_width, height)
-                X_WF = RigidTransform(RollPitchYaw(0.0, 0.0, piece.yaw), [piece.x, piece.y, height / 2])
-                friction = CoulombFriction(0.6, 0.6)
-                self.plant.RegisterCollisionGeometry(self.plant.world_body(), X_WF, block, piece.name, friction)
 
     def _wire(self, builder, options):
         self.world, self.executor = World(self.ward, **options), InPlaceExecutor(self.ward)
@@ -131,6 +121,14 @@ class Ward:
         atoms = self.output(self.world, "world_facts").atoms
         return {atom[0] for atom in atoms if atom[0] != "available"}
 
+    def hanging(self, pad):
+        """Where a box at that pad belongs, by the real pose of the gripper."""
+        X_WG = self.robot.gripper.CalcPoseInWorld(self.plant_context)
+        bar = self.plant.GetBodyByName("base", self.robot.robot).EvalPoseInWorld(self.plant_context).rotation()
+        yaw = self.plant.get_state_output_port(self.robot.arm).Eval(self.plant_context)[0]
+        along = bar.multiply([-PAD_OFFSETS[pad] * math.sin(yaw), PAD_OFFSETS[pad] * math.cos(yaw), 0.0])
+        return X_WG.translation() + along - [0.0, 0.0, HANGING_DEPTH]
+
     def position(self, item):
         return self.plant.GetFreeBodyPose(self.plant_context, self.items.body(item)).translation()
 
@@ -189,13 +187,78 @@ def test_a_wrong_medicine_is_found_put_down_and_collected_again():
     assert used == pytest.approx(0.05 + 0.02 + 0.02 + 0.05 + 0.05 + 0.02, abs=1e-3)
 
 
+PUT_BACK = [
+    (place, kind, arrival)
+    for place, kind in (
+        (NORTH, "med_antibiotic"),
+        ("pharmacy_south", "med_antibiotic"),
+        (SUPPLY, "supp_vitamin_d"),
+        ("supply_B", "supp_vitamin_d"),
+    )
+    for arrival in (
+        (0.0, 0.0, 0.0),
+        *((0.15 * math.cos(angle), 0.15 * math.sin(angle), 0.2) for angle in (0.5, 2.5)),
+        *((0.15 * math.cos(angle), 0.15 * math.sin(angle), -0.2) for angle in (1.5, 3.5, 5.5)),
+    )
+]
+QUICK = {(NORTH, (0.0, 0.0, 0.0)), (SUPPLY, PUT_BACK[3][2])}
+
+
+@pytest.mark.parametrize(
+    ("place", "kind", "arrival"),
+    [
+        pytest.param(*case, marks=() if (case[0], case[2]) in QUICK else pytest.mark.slow, id=f"{case[0]}-{i % 6}")
+        for i, case in enumerate(PUT_BACK)
+    ],
+)
+def test_the_other_box_stays_in_the_gripper_while_wrong_ones_are_put_back(place, kind, arrival):
+    """Wherever a leg ends, both wrong kinds come first, and no collect after a put-down upsets the shelf."""
+    items = {item.name: item for item in all_items(LoadWard())}
+    wrong = [item.kind for item in items.values() if item.place == place and item.kind != kind]
+    stage, is_medicine = Ward(wrong_items=wrong), kind.startswith("med_")
+    other_place, other_kind = ("supply_A", "supp_vitamin_d") if is_medicine else (NORTH, "med_antibiotic")
+    other = f"{other_place}/{other_kind}"
+    stage.stand_at(other_place)
+    assert stage.do(f"collect_{other_kind}")[0] is Outcome.SUCCESS
+    stage.stand_at(place, *arrival)
+    for handed in (*wrong, kind):
+        assert stage.do(f"collect_{kind}")[0] is Outcome.SUCCESS
+        assert {item for item, _ in stage.output(stage.executor, "magnet").held} == {other, f"{place}/{handed}"}
+        outcome, seconds = stage.do("put_down_medicine" if is_medicine else "put_down_supplement")
+        assert outcome is Outcome.SUCCESS
+        assert seconds <= 5.0
+        held = ((other, 1 if is_medicine else 0),)
+        assert stage.output(stage.executor, "magnet").held == held
+        stage.simulator.AdvanceTo(stage.context.get_time() + 2.0)
+        assert math.dist(stage.position(other), stage.hanging(held[0][1])) < 0.015
+        for item in items.values():
+            if item.name != other:
+                pose = item.shelf_pose
+                assert stage.position(item.name) == pytest.approx([pose.x, pose.y, pose.z], abs=2e-3), item.name
+
+
+def test_a_box_from_elsewhere_is_put_where_it_is_in_nobodys_way():
+    stage = Ward()
+    for place, name in ((SUPPLY, "collect_supp_vitamin_d"), (NORTH, "collect_med_insulin")):
+        stage.stand_at(place)
+        assert stage.do(name)[0] is Outcome.SUCCESS
+    stage.stand_at("pharmacy_south", 0.05, -0.05, 0.1)
+    assert stage.do("put_down_medicine")[0] is Outcome.SUCCESS
+    left_there = stage.position(f"{NORTH}/med_insulin")
+    assert left_there[2] == pytest.approx(LEDGE_HEIGHT + 0.05, abs=0.01)
+    assert stage.do("collect_med_antibiotic")[0] is Outcome.SUCCESS
+    held = {item for item, _ in stage.output(stage.executor, "magnet").held}
+    assert held == {"supply_A/supp_vitamin_d", "pharmacy_south/med_antibiotic"}
+    assert stage.position(f"{NORTH}/med_insulin") == pytest.approx(left_there, abs=1e-3)
+
+
 def test_a_box_taken_away_is_not_there():
     stage = Ward()
     stage.stand_at(NORTH)
     body = stage.items.body(f"{NORTH}/med_antibiotic")
     stage.action.GetMutableData().set_value(Action(1, ActionKind.IN_PLACE, "collect_med_antibiotic", (), NORTH, NORTH))
     stage.sequence = 1
-    stage.simulator.AdvanceTo(stage.context.get_time() + 2.2)
+    stage.simulator.AdvanceTo(stage.context.get_time() + 2.5)
     stage.plant.SetFreeBodyPose(stage.plant_context, body, RigidTransform([5.0, 10.0, 0.05]))
     stage.simulator.AdvanceTo(stage.context.get_time() + 4.0)
     assert stage.output(stage.executor, "in_place_report").outcome is Outcome.NOT_THERE

@@ -8,6 +8,7 @@ import mala_drake.robot.in_place_executor as mut
 from mala_drake.clock import TICK
 from mala_drake.messages import Action, ActionKind, ArmCommand, MagnetCommand, Outcome
 from mala_drake.robot.arm_kinematics import STOWED
+from mala_drake.robot.in_place_motions import HOVER_HEIGHT
 from mala_drake.robot.item_messages import HandedItem
 from mala_drake.ward.items import all_items
 from mala_drake.ward.ward_map import LoadWard
@@ -94,7 +95,7 @@ def test_collecting_reaches_for_the_box_and_draws_its_charge(ward):
     assert stage.output("charge_rates") == pytest.approx([0.01, 0.0])
     x, y, z = stage.output("arm_target").p_BG
     assert math.hypot(x - 0.70, y - 0.24) < 0.08
-    assert z == pytest.approx(0.83 + 0.05 + 0.02 + 0.08)
+    assert z == pytest.approx(0.83 + 0.05 + 0.02 + HOVER_HEIGHT)
 
 
 def test_a_move_is_none_of_its_business(ward):

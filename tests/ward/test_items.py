@@ -75,10 +75,15 @@ def test_the_box_at_the_other_pad_passes_between_the_boxes_on_the_shelf(ward):
             assert footprint(carried).distance(footprint(other.shelf_pose)) > 0.01
 
 
-def test_return_spots_are_free_and_on_the_ledge(ward):
+def test_a_box_is_put_back_where_its_kind_stands_if_that_is_free(ward):
+    for item in mut.all_items(ward):
+        assert mut.return_spots(ward, item.place, item.kind)[0] == item.shelf_pose
+
+
+def test_the_other_return_spots_are_free_and_on_the_ledge(ward):
     items = mut.all_items(ward)
     for place in {item.place for item in items}:
-        spots = mut.return_spots(ward, place)
+        spots = mut.return_spots(ward, place, "")
         assert spots
         for spot in spots:
             assert outline(ward.furniture_of[place].shape).contains(footprint(spot))
@@ -103,12 +108,12 @@ def test_table_spots_hold_pairs_side_by_side(ward):
 def test_spots_are_near_enough_for_the_arm(ward):
     places = [place.name for place in ward.places]
     spots = [(item.place, item.shelf_pose) for item in mut.all_items(ward)]
-    spots += [(place, spot) for place in places for spot in mut.return_spots(ward, place)]
+    spots += [(place, spot) for place in places for spot in mut.return_spots(ward, place, "")]
     spots += [(place, spot) for place in places for spot in mut.table_spots(ward, place)]
     assert all(0.4 < distance_to_standing_point(ward, spot, place) < 0.9 for place, spot in spots)
 
 
 @pytest.mark.parametrize("place", ["home", "charge_main", "nowhere", ""])
 def test_nothing_can_be_put_where_there_is_no_ledge_or_table(ward, place):
-    assert mut.return_spots(ward, place) == ()
+    assert mut.return_spots(ward, place, "med_insulin") == ()
     assert mut.table_spots(ward, place) == ()
