@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 
-class OutOfBudget(Exception):  # noqa: N818 (it is an outcome, not an error)
+class OutOfBudget(Exception):
     """The limit was reached before the answer was known."""
 
 

@@ -167,7 +167,8 @@ class PlanningTask:
             text = f"({' '.join(name)})"
             signature = declared.get(name[0]) if name else None
             if signature is None or len(signature) != len(name) - 1:
-                raise BadInput(text, f"the domain has no such {kind}", f"one of {' '.join(sorted(declared))}")
+                known = f"one of {' '.join(sorted(declared))}" if declared else f"no {kind}: it declares none"
+                raise BadInput(text, f"the domain has no such {kind}", known)
             for each in name[1:]:
                 if each not in self.description.objects:
                     raise BadInput(text, f"the task has no object '{each}'")

@@ -118,4 +118,3 @@ def test_the_patients_room_is_not_seen_into_from_the_corridor():
     assert math.dist((16.9, 8.0), (bed.x, bed.y)) < REACH
     assert "room_wall_west_lower" in names
     assert "bed" not in names
-

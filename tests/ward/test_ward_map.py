@@ -85,7 +85,7 @@ def test_the_walls_close_the_ward(ward):
     outside = ward.half_extent + ward.wall_half_thickness
     assert ShapeDistances([wall.shape for wall in ward.walls])((0.0, 0.0)) == pytest.approx([24.8] * 4)
     corners = list(itertools.product((-outside + 0.01, outside - 0.01), repeat=2))
-    inside_some_wall = (ShapeDistances([wall.shape for wall in ward.walls])(corners) < ward.wall_half_thickness * 1.5)
+    inside_some_wall = ShapeDistances([wall.shape for wall in ward.walls])(corners) < ward.wall_half_thickness * 1.5
     assert inside_some_wall.any(axis=1).all()
 
 
