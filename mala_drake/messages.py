@@ -167,7 +167,7 @@ class SymbolicState(Message):
 class WorldFacts(Message):
     """What the robot's sensors have established about the world (not the truth the world keeps to itself).
 
-    `atoms` are sorted; `handed_item` is the item body that a dispenser holds out now, with its pose in the world.
+    `atoms` are sorted.
     """
 
     atoms: tuple[Atom, ...] = ()

@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.errors import BadInput
+from mala_drake.preferences import CRITERIA
 
 from .model import CONTROL_SIZE, STATE_SIZE
 from .parameters import CONTROL_WEIGHTS, STATE_WEIGHTS
 
-FEATURES = ("time", "safety", "battery", "proximity", "approach")
+FEATURES = CRITERIA
 """Order of the preference weights."""
 
 _SIMPLEX_TOLERANCE = 1e-6

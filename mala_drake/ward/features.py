@@ -14,11 +14,12 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mala_drake.preferences import CRITERIA
 from mala_drake.ward.congestion import RISK_LENGTH, Congestion
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import Ward
 
-FEATURES = ("time", "safety", "battery", "proximity", "approach")
+FEATURES = CRITERIA
 
 COMFORT_RADIUS = 3.0
 """Metres round the bed within which the robot is felt as near."""

@@ -31,7 +31,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Furniture:
-    """Something solid on the floor. `serves` names the place it belongs to; `model` its SDF in `models/`."""
+    """Something solid on the floor. `serves` names the place it belongs to; `model` its looks in `furnishing/`."""
 
     name: str
     model: str
