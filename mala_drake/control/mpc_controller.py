@@ -197,9 +197,16 @@ class MpcController(LeafSystem):
         started = time.perf_counter()
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)
         self.solve_seconds.append(time.perf_counter() - started)
-        report = replace(driving.report, steps=leg.steps, solves=driving.report.solves + 1)
+        # A solve that stopped early counts as failed, also where its controls are good enough to drive with.
+        report = replace(
+            driving.report,
+            steps=leg.steps,
+            solves=driving.report.solves + 1,
+            failures=driving.report.failures + (not solution.success),
+        )
+        driving = replace(driving, report=report)
         if not solution.success and not _is_usable(solution):
-            return self._after_failed_solve(replace(driving, report=report), robot_state, solution)
+            return self._after_failed_solve(driving, robot_state, solution)
         stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage)
         return replace(
             driving,
@@ -212,9 +219,8 @@ class MpcController(LeafSystem):
 
     def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
         """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""
-        report = replace(driving.report, failures=driving.report.failures + 1)
         bad_solves = driving.bad_solves + 1
-        driving = replace(driving, report=report, bad_solves=bad_solves, warm_start=None, control=PARKED)
+        driving = replace(driving, bad_solves=bad_solves, warm_start=None, control=PARKED)
         if bad_solves > self._guide.rules.tolerated_failures:
             detail = f"{bad_solves} solves in a row ended as {solution.status.value}"
             return self._finish(driving, robot_state, Outcome.SOLVER_FAILURE, detail)

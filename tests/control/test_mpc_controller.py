@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pydrake.common.value import Value
@@ -11,6 +13,7 @@ from mala_drake.clock import TICK
 from mala_drake.control import mpc_controller as mut
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
+from mala_drake.control.solution import Status
 from mala_drake.control.solver import MakeSolver
 from mala_drake.messages import (
     Action,
@@ -42,6 +45,18 @@ class FailingSolver:
         self._calls += 1
         state = np.full(6, np.nan) if self._calls in self._failing else initial_state
         return self._solver.solve(state, parameters, warm_start)
+
+
+class HurriedSolver:
+    """Wraps a solver and says of each result that it was stopped early."""
+
+    name = "hurried"
+
+    def __init__(self, solver):
+        self._solver = solver
+
+    def solve(self, initial_state, parameters, warm_start=None):
+        return replace(self._solver.solve(initial_state, parameters, warm_start), status=Status.ITERATION_LIMIT)
 
 
 @pytest.fixture(scope="module")
@@ -144,6 +159,16 @@ def test_a_failed_solve_brakes_and_the_next_one_goes_on(problem):
     bench.tick()
     assert bench.output("control")[0] > 0.1
     assert bench.output("leg_report").outcome is Outcome.RUNNING
+
+
+def test_a_solve_that_stops_early_drives_on_but_counts_as_failed(problem):
+    bench = Bench(problem, solver=HurriedSolver(MakeSolver("snopt", problem)))
+    bench.send(GO)
+    bench.tick()
+    report = bench.output("leg_report")
+    assert report.outcome is Outcome.RUNNING
+    assert (report.solves, report.failures) == (1, 1)
+    assert bench.output("control")[0] > 0.1
 
 
 def test_a_solver_that_keeps_failing_is_reported(problem):
