@@ -193,6 +193,18 @@ def graph(
 
 
 @app.command()
+def report(
+    folder: Annotated[Path, typer.Argument(help="Results of `experiment --out` or `run --out`.")],
+    out: Annotated[Path | None, typer.Option(help="Folder of the report; `report` in the results if left out.")] = None,
+) -> None:
+    """Make all figures and tables of an experiment, and one page that shows them."""
+    from mala_drake.reporting.report import write_report
+
+    written = write_report(folder, out)
+    typer.echo(f"wrote {written[0]}, and {len(written) - 1} figures and tables beside it")
+
+
+@app.command()
 def bench(
     name: Annotated[str | None, typer.Argument(help="plant, mpc or plan; all of them if left out.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,

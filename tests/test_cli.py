@@ -304,3 +304,9 @@ def test_the_same_seed_gives_the_same_bytes_whatever_the_hash_seed(tmp_path):
         lines[seed] = [json.dumps({**record, "timing": None}) for record in records]
     assert len(lines["1"]) == 1
     assert lines["1"] == lines["2"]
+
+
+def test_a_report_without_results_is_one_line(capfd, tmp_path):
+    assert "has no episodes" in mistake(capfd, "report", tmp_path)
+    assert "is not a folder" in mistake(capfd, "report", tmp_path / "nowhere")
+    assert "folder" in mistake(capfd, "report").lower()

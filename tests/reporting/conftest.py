@@ -1,12 +1,21 @@
-"""A small diagram whose graph is known by heart."""
+"""A small diagram whose graph is known by heart, and results of experiments that nobody had to simulate."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
+
+from mala_drake.experiments.episode_record import EpisodeFile, EpisodeRecord, by_criterion
+from mala_drake.learning.convergence import preference_distance
+from mala_drake.learning.projected_gradient import ProjectedGradient
+from mala_drake.patient.profiles import PROFILES
+from mala_drake.patient.rating import RatingHabits, rate
+from mala_drake.randomness import keyed_generator
 
 
 def _nested_diagram() -> Diagram:
@@ -37,3 +46,117 @@ def _nested_diagram() -> Diagram:
 def make_nested_diagram() -> Callable[[], Diagram]:
     """Each call builds the diagram anew."""
     return _nested_diagram
+
+
+_MEDICATION = {
+    ("north", "A", "left"): (0.54, 0.78, 0.50, 0.56, 0.48),
+    ("north", "A", "right"): (0.59, 0.55, 0.56, 0.75, 0.33),
+    ("south", "B", "left"): (0.75, 0.66, 0.70, 0.57, 0.48),
+    ("south", "B", "right"): (0.84, 0.41, 0.86, 0.71, 0.33),
+}
+"""Features by pharmacy, supply room and bedside."""
+
+_MEAL = {
+    ("sandwich", "left"): (0.45, 0.60, 0.35, 0.50, 0.70),
+    ("salad", "right"): (0.60, 0.45, 0.45, 0.40, 0.50),
+    ("hot_meal", "right"): (0.85, 0.50, 0.90, 0.45, 0.25),
+}
+"""Features by dish and bedside."""
+
+
+def _medication_actions(pharmacy, supply, side):
+    at_pharmacy, at_supply = f"pharmacy_{pharmacy}", f"supply_{supply.lower()}"
+    return [
+        f"(go_to_{at_pharmacy} robot1 home)",
+        f"(collect_med_antibiotic robot1 {at_pharmacy})",
+        f"(check_medication_correct robot1 {at_pharmacy} med_antibiotic)",
+        f"(go_to_{at_supply} robot1 {at_pharmacy})",
+        f"(collect_supp_vitamin_d robot1 {at_supply})",
+        f"(check_supplement_correct robot1 {at_supply} supp_vitamin_d)",
+        f"(approach_{side}_to_bed robot1 {at_supply})",
+        f"(deliver_on_bedside_table_{side} robot1)",
+    ]
+
+
+def _episode(learner, state, *, episode, task, profile, seed, rating_noise):
+    """A record of the patient's true formula and the learner's true update, on features from a table."""
+    generator = keyed_generator(seed, episode, "simulated " + profile)
+    weights = learner.planning_weights(state, generator)
+    table = _MEDICATION if task == "medication" else _MEAL
+    choice = min(table, key=lambda each: np.dot(weights, table[each]))
+    features = np.clip(np.array(table[choice]) + 0.01 * generator.standard_normal(5), 0.0, 1.0)
+    ratings = rate(features, PROFILES[profile], generator, RatingHabits(noise=rating_noise))
+    after = learner.update(state, ratings=ratings, features=features)
+    deviation = learner.deviation(after)
+    record = EpisodeRecord(
+        episode=episode,
+        task=task,
+        profile=profile,
+        seed=seed,
+        success=True,
+        failure=None,
+        actions=_medication_actions(*choice) if task == "medication" else [f"(choose_{choice[0]} robot1)"],
+        plan_variant="/".join((*choice[:2], "med-supp", choice[2]) if task == "medication" else choice),
+        plan_cost=float(np.dot(weights, table[choice])),
+        replans=8,
+        features=by_criterion(features),
+        predicted_features=by_criterion(table[choice]),
+        ratings=list(ratings),
+        weights_before=list(learner.estimate(state)),
+        weights_after=list(learner.estimate(after)),
+        weights_std=None if deviation is None else list(deviation),
+        distance_to_true=preference_distance(learner.estimate(after), PROFILES[profile]),
+        sim_time_s=160.0 * float(features[0]),
+        solver="snopt",
+        mpc_solves=250,
+        mpc_failures=0,
+        min_clearance_m=0.22,
+        collisions=0,
+        terminal_errors_m=[0.016, 0.014, 0.011],
+        terminal_yaw_errors_rad=[0.01, 0.01, 0.02],
+        terminal_speeds_m_s=[0.0, 0.0, 0.0],
+        leg_outcomes=["success"] * 3,
+        mismatches=0,
+        battery_start=1.0,
+        battery_end=1.0 - float(features[2]),
+        timing={"wall_s": 5.9, "mpc_median_ms": 7.5},
+    )
+    return record, after
+
+
+def _simulate_results(
+    folder,
+    *,
+    profiles=tuple(PROFILES),
+    seeds=(0, 1),
+    episodes=4,
+    condition="",
+    tasks=("medication",),
+    change=None,
+    **learner,
+):
+    """Writes runs as an experiment lays them out; `change` may alter a record before it is written."""
+    for profile in profiles:
+        for seed in seeds:
+            method = ProjectedGradient(**learner)
+            state = method.initial_state()
+            file = EpisodeFile(folder / condition / profile / f"seed_{seed}")
+            for episode in range(episodes):
+                record, state = _episode(
+                    method,
+                    state,
+                    episode=episode,
+                    task=tasks[episode % len(tasks)],
+                    profile=profile,
+                    seed=seed,
+                    rating_noise=0.1,
+                )
+                file.append(change(record) or record if change else record)
+            file.close()
+    return folder
+
+
+@pytest.fixture(scope="session")
+def simulate_results() -> Callable[..., Path]:
+    """Writes the results of an experiment without the physics: real ratings, real learner, features from a table."""
+    return _simulate_results

@@ -1,0 +1,127 @@
+"""`mala-drake report`: every figure and table of an experiment, and one page that shows them all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+from mala_drake.errors import BadInput
+from mala_drake.experiments.episode_record import check_writable
+from mala_drake.reporting.figures.conditions import condition_picture
+from mala_drake.reporting.figures.distances import distance_pictures
+from mala_drake.reporting.figures.features import feature_picture
+from mala_drake.reporting.figures.floor_plan import floor_plan_pictures
+from mala_drake.reporting.figures.picture import Picture
+from mala_drake.reporting.figures.plans import meal_picture, variant_picture
+from mala_drake.reporting.figures.prediction import prediction_picture
+from mala_drake.reporting.figures.style import styled, words
+from mala_drake.reporting.figures.weights import final_weights_picture, trajectory_picture
+from mala_drake.reporting.findings import headline, learning_sentences, plan_sentences, problems
+from mala_drake.reporting.report_page import Section, report_page
+from mala_drake.reporting.result_tables import condition_table, convergence_table, timing_table
+from mala_drake.reporting.results import Results, load_results
+from mala_drake.reporting.table import Table
+from mala_drake.ward.ward_map import LoadWard, Ward
+
+PAGE = "report.html"
+_TITLE = "Learning what the patient wants"
+
+
+def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
+    """Writes the figures (PNG and PDF), the tables (Markdown and LaTeX) and the page of the results in a folder.
+
+    The same results give the same bytes.
+
+    Args:
+        folder: as `run --out` or `experiment --out` has written it, or as much of it as there is.
+        out: where the report goes; None is `report` in the folder.
+
+    Returns:
+        What was written, the page first.
+
+    Raises:
+        BadInput: when the folder holds no results, or a file cannot be written.
+    """
+    results = load_results(folder)
+    out = folder / "report" if out is None else out
+    check_writable(out / PAGE)
+    with styled():
+        sections = tuple(_sections(results, _ward(results)))
+        page = report_page(
+            title=_TITLE, lead=_lead(results), headline=headline(results), problems=problems(results), sections=sections
+        )
+        written = [path for item in _content(sections) for path in _write(item, out)]
+    (out / PAGE).write_text(page, encoding="utf-8")
+    return (out / PAGE, *written)
+
+
+def _sections(results: Results, ward: Ward) -> Iterator[Section]:
+    yield Section(
+        "learning",
+        "Learning",
+        learning_sentences(results),
+        (
+            *distance_pictures(results),
+            convergence_table(results),
+            *trajectory_picture(results),
+            *final_weights_picture(results),
+        ),
+    )
+    yield Section(
+        "plans",
+        "Plans",
+        plan_sentences(results),
+        (
+            *variant_picture(results),
+            *meal_picture(results),
+            *floor_plan_pictures(results, ward),
+            *feature_picture(results),
+            *prediction_picture(results),
+        ),
+    )
+    table = condition_table(results)
+    if table:
+        yield Section("conditions", "Conditions", (), (*condition_picture(results), table))
+    times = timing_table(results)
+    if times:
+        yield Section("times", "Times", (), (times,))
+
+
+def _lead(results: Results) -> str:
+    runs = results.of(results.main)
+    tasks = " and ".join(words(task) for task in results.tasks)
+    lengths = sorted({len(run.episodes) for run in runs})
+    episodes = f"{lengths[-1]}" if len(lengths) == 1 else f"{lengths[0]} to {lengths[-1]}"
+    patients = f"{len(results.profiles)} patient{'s' * (len(results.profiles) != 1)}"
+    return (
+        f"{patients}, {len(runs)} run{'s' * (len(runs) != 1)} of {episodes} episodes each ({tasks}), "
+        f"learner: {words(results.learner(results.main))}. Everything here is counted from the recorded episodes."
+    )
+
+
+def _ward(results: Results) -> Ward:
+    """The ward that was run in; the one that comes with the package when it cannot be read any more."""
+    told = results.scenario.get("ward")
+    try:
+        return LoadWard(str(told)) if told else LoadWard()
+    except BadInput:
+        return LoadWard()
+
+
+def _content(sections: Iterable[Section]) -> Iterator[Picture | Table]:
+    return (item for section in sections for item in section.content)
+
+
+def _write(item: Picture | Table, out: Path) -> Iterator[Path]:
+    if isinstance(item, Picture):
+        folder = out / "figures"
+        folder.mkdir(parents=True, exist_ok=True)
+        yield from item.write(folder)
+        return
+    folder = out / "tables"
+    folder.mkdir(parents=True, exist_ok=True)
+    forms: tuple[tuple[str, Callable[[], str]], ...] = ((".md", item.to_markdown), (".tex", item.to_latex))
+    for suffix, text in forms:
+        path = folder / (item.name + suffix)
+        path.write_text(text(), encoding="utf-8")
+        yield path

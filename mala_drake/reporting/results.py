@@ -1,0 +1,225 @@
+"""Reads what `run --out` and `experiment --out` have written: every run of every condition, with what is missing."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from mala_drake.errors import BadInput
+from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
+from mala_drake.patient.profiles import PROFILES
+from mala_drake.preferences import CRITERIA
+
+MAIN = ""
+"""The condition of the runs that lie in no condition's folder."""
+
+_SEED_FOLDER = "seed_"
+_SUMMARY_FILE = "summary.json"
+_PLAIN: Mapping[str, tuple[type, ...]] = {"str": (str,), "int": (int,), "bool": (bool,), "float": (int, float)}
+_MAIN_NAMES = ("full", "default", "main", "posterior")  # What an experiment without a main condition is measured by.
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: a patient and a seed under a condition, with at least one episode, in their order."""
+
+    condition: str
+    profile: str
+    seed: int
+    episodes: tuple[EpisodeRecord, ...]
+
+    @property
+    def final(self) -> EpisodeRecord:
+        """The last episode."""
+        return self.episodes[-1]
+
+    def of_task(self, task: str) -> tuple[EpisodeRecord, ...]:
+        """The episodes of one task."""
+        return tuple(record for record in self.episodes if record.task == task)
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything a folder holds.
+
+    Attributes:
+        name: of the folder.
+        runs: sorted by condition (the main one first), profile and seed.
+        scenario: as `summary.json` tells it; empty when it tells none.
+        notes: what is missing or was left out, in sentences.
+    """
+
+    name: str
+    runs: tuple[Run, ...]
+    scenario: Mapping[str, Any]
+    notes: tuple[str, ...]
+
+    @cached_property
+    def conditions(self) -> tuple[str, ...]:
+        """The conditions, the main one first."""
+        return tuple(dict.fromkeys(run.condition for run in self.runs))
+
+    @property
+    def main(self) -> str:
+        """The condition that the figures show."""
+        return self.conditions[0]
+
+    @cached_property
+    def profiles(self) -> tuple[str, ...]:
+        """The profiles of the main condition."""
+        return tuple(dict.fromkeys(run.profile for run in self.of(self.main)))
+
+    @cached_property
+    def tasks(self) -> tuple[str, ...]:
+        """The tasks of the main condition, in the order in which they first come."""
+        return tuple(dict.fromkeys(record.task for run in self.of(self.main) for record in run.episodes))
+
+    def of(self, condition: str, profile: str | None = None) -> tuple[Run, ...]:
+        """The runs of a condition, those of one profile if it is given."""
+        return tuple(run for run in self.runs if run.condition == condition and profile in (None, run.profile))
+
+    def learner(self, condition: str) -> str:
+        """The name of the learner that a condition ran with, as far as the folder tells it."""
+        told = self.scenario.get("learner", {})
+        name = str(told.get("name", "")) if isinstance(told, dict) else ""
+        return condition or name or "main"
+
+    def true_weights(self, profile: str) -> tuple[float, ...] | None:
+        """What the patient really wants; None for a patient of whom the folder does not tell it."""
+        patient = self.scenario.get("patient", {})
+        told = patient.get("true_weights") if isinstance(patient, dict) else None
+        if profile not in PROFILES and isinstance(told, list) and len(told) == len(CRITERIA):
+            return tuple(float(weight) for weight in told)
+        return PROFILES.get(profile)
+
+
+def load_results(folder: Path) -> Results:
+    """Reads a folder of results.
+
+    Raises:
+        BadInput: when the folder holds no episode, or a line that is not an episode's (a torn last line is left out).
+    """
+    if not folder.is_dir():
+        raise BadInput(str(folder), "is not a folder", "one that `run --out` or `experiment --out` has written")
+    notes: list[str] = []
+    runs = [run for path in sorted(folder.rglob(EPISODES_FILE)) if (run := _read_run(folder, path, notes))]
+    if not runs:
+        expected = f"{EPISODES_FILE} of `run --out` or `experiment --out` in it"
+        raise BadInput(str(folder), "has no episodes", expected)
+    main = _main_condition({run.condition for run in runs})
+    order = [*PROFILES, *sorted({run.profile for run in runs} - set(PROFILES))]
+    runs.sort(key=lambda run: (run.condition != main, run.condition, order.index(run.profile), run.seed))
+    notes += _missing(runs)
+    return Results(folder.resolve().name, tuple(runs), _scenario(folder, notes), tuple(notes))
+
+
+def _main_condition(conditions: set[str]) -> str:
+    return next((name for name in (MAIN, *_MAIN_NAMES) if name in conditions), min(conditions))
+
+
+def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
+    """The run whose episodes `path` holds; None, with a note, where there is none."""
+    place = path.parent.relative_to(folder)
+    records = tuple(_records(path, notes, shown=place / path.name))
+    if not records:
+        notes.append(f"{place / path.name} holds no episode.")
+        return None
+    if not place.parts:
+        condition, profile, seed = MAIN, records[0].profile, records[0].seed
+    elif len(place.parts) in (2, 3) and place.name.removeprefix(_SEED_FOLDER).isdecimal():
+        condition = place.parts[0] if len(place.parts) == 3 else MAIN
+        profile, seed = place.parts[-2], int(place.name.removeprefix(_SEED_FOLDER))
+    else:
+        notes.append(f"{place / path.name} is left out: it is in no folder <profile>/seed_<number>.")
+        return None
+    for number, record in enumerate(records):
+        if (record.profile, record.seed) != (profile, seed):
+            found = f"an episode of {record.profile}, seed {record.seed}"
+            raise BadInput(str(path), found, f"{profile}, seed {seed}, as its folder says")
+        if record.episode != number:
+            raise BadInput(f"{path}, line {number + 1}", f"episode {record.episode}", f"episode {number}")
+    return Run(condition, profile, seed, records)
+
+
+def _records(path: Path, notes: list[str], *, shown: Path) -> Iterator[EpisodeRecord]:
+    try:
+        lines = path.read_bytes().split(b"\n")
+    except OSError as error:
+        raise BadInput(str(path), f"cannot be read ({error.strerror})", "a readable file") from None
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            data = json.loads(line)
+        except ValueError:
+            if number == len(lines):  # Every whole line ends with a newline: this one was being written.
+                notes.append(f"The last line of {shown} is torn and left out.")
+                return
+            raise BadInput(f"{path}, line {number}", "is not JSON", "one episode a line") from None
+        yield _record(data, where=f"{path}, line {number}")
+
+
+def _record(data: Any, *, where: str) -> EpisodeRecord:
+    """The record of one line; keys that a newer version may have added are passed over."""
+    if not isinstance(data, dict):
+        raise BadInput(where, "is not an object", "an episode")
+    values: dict[str, Any] = {"leg_outcomes": []}  # Not in the file.
+    for item in fields(EpisodeRecord):
+        if item.name in data:
+            values[item.name] = _restored(data[item.name], str(item.type), where=f"{where}: {item.name}")
+        elif item.name not in values and item.default is MISSING and item.default_factory is MISSING:
+            raise BadInput(where, f"has no {item.name!r}", "a whole episode record")
+    return EpisodeRecord(**values)
+
+
+def _restored(value: Any, kind: str, *, where: str) -> Any:
+    """The value as the record has it: what was written as null because it was not finite is NaN again."""
+    if kind == "float" and value is None:
+        return math.nan
+    expected = _PLAIN.get(kind)
+    if expected is not None and (not isinstance(value, expected) or (isinstance(value, bool) and kind != "bool")):
+        raise BadInput(where, repr(value), f"a value of type {kind}")
+    if kind == "dict[str, float]" and isinstance(value, dict):
+        return {key: _restored(item, "float", where=f"{where}.{key}") for key, item in value.items()}
+    if kind.startswith("list[float]") and isinstance(value, list):
+        return [_restored(item, "float", where=where) for item in value]
+    if value is None and "None" not in kind:
+        raise BadInput(where, "null", f"a value of type {kind}")
+    return value
+
+
+def _missing(runs: list[Run]) -> Iterator[str]:
+    """What is less than it should be, judged by the other runs of the same condition."""
+    for condition in dict.fromkeys(run.condition for run in runs):
+        of_condition = [run for run in runs if run.condition == condition]
+        within = f" under {condition}" if condition else ""
+        seeds = {run.seed for run in of_condition}
+        longest = max(len(run.episodes) for run in of_condition)
+        for profile in dict.fromkeys(run.profile for run in of_condition):
+            absent = sorted(seeds - {run.seed for run in of_condition if run.profile == profile})
+            if absent:
+                numbers = ", ".join(map(str, absent))
+                yield f"No run of {profile} with seed {numbers}{within}, which other profiles have."
+        for run in of_condition:
+            if len(run.episodes) < longest:
+                done = f"{len(run.episodes)} of {longest} episodes"
+                yield f"The run of {run.profile}, seed {run.seed}{within}, has only {done}."
+
+
+def _scenario(folder: Path, notes: list[str]) -> Mapping[str, Any]:
+    path = folder / _SUMMARY_FILE
+    if not path.is_file():
+        notes.append(f"There is no {_SUMMARY_FILE}: the runs may not have come to their end.")
+        return {}
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        notes.append(f"{_SUMMARY_FILE} cannot be read and is left out.")
+        return {}
+    scenario = summary.get("scenario", {}) if isinstance(summary, dict) else {}
+    return scenario if isinstance(scenario, dict) else {}

@@ -1,0 +1,160 @@
+"""The whole report: every file is there, the same each time, from one episode to an experiment with failures."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import mala_drake
+from mala_drake.errors import BadInput
+from mala_drake.reporting import report as mut
+
+LOADS = {"src", "href", "xlink:href", "srcset", "data", "action", "poster"}
+EMPTY = {"meta", "link", "br", "img", "hr", "input"}
+
+
+class Page(HTMLParser):
+    """Collects what a page loads and its text, and fails on tags that do not pair up."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.loads, self.ids, self.text = [], [], [], ""
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in EMPTY:
+            self.open.append(tag)
+        self.loads += [value for name, value in attributes if name in LOADS]
+        self.ids += [value for name, value in attributes if name == "id"]
+
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+        if tag not in EMPTY:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def read(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def experiment(tmp_path_factory, simulate_results):
+    folder = tmp_path_factory.mktemp("experiment")
+    simulate_results(folder, episodes=4, tasks=("medication", "meal"))
+    simulate_results(folder, profiles=("speed_oriented",), episodes=2, condition="projected_gradient", step_size=0.03)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def written(experiment):
+    return mut.write_report(experiment)
+
+
+def test_every_picture_shows_something(written):
+    pictures = [path for path in written if path.suffix == ".png"]
+    names = {path.stem for path in pictures}
+    assert {"distance", "weights", "final_weights", "plans", "meals", "features", "prediction", "conditions"} <= names
+    assert "floor_plan_medication" in names
+    for path in pictures:
+        pixels = imread(path)[:, :, :3]
+        assert min(pixels.shape[:2]) > 100
+        assert 0.01 < np.mean(np.abs(pixels - pixels[0, 0]).max(axis=2) > 0.05) < 0.95, path.name
+        assert path.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_tables_are_written_for_readme_and_paper(written):
+    assert {path.name for path in written if path.suffix in (".md", ".tex")} == {
+        f"{name}.{suffix}" for name in ("convergence", "conditions", "timing") for suffix in ("md", "tex")
+    }
+
+
+def test_the_page_stands_alone(written):
+    text = written[0].read_text(encoding="utf-8")
+    page = Page(text)
+    assert all(load.startswith("#") for load in page.loads)
+    assert "http:" not in text
+    assert "https:" not in text
+    assert "@import" not in text
+    assert "url(" not in re.sub(r"url\(#", "", text)
+    assert len(page.ids) == len(set(page.ids))
+    assert {load[1:] for load in page.loads} <= set(page.ids)
+    assert text.count("<svg") == sum(path.suffix == ".png" for path in written)
+
+
+def test_the_same_results_give_the_same_bytes_in_any_process(experiment, written, tmp_path):
+    command = [sys.executable, "-m", "mala_drake", "report", str(experiment), "--out", str(tmp_path / "again")]
+    root = str(Path(mala_drake.__file__).parents[1])
+    environment = {**os.environ, "PYTHONPATH": root, "PYTHONHASHSEED": "7"}
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=tmp_path)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "report.html" in ended.stdout
+    assert read(tmp_path / "again") == read(written[0].parent)
+
+
+def test_problems_stand_above_all_figures(written):
+    text = Page(written[0].read_text(encoding="utf-8")).text
+    assert text.index("There is no summary.json") < text.index("Figure 1")
+    assert "No episode failed" not in text
+
+
+def test_one_failed_episode_is_enough(tmp_path, simulate_results):
+    """Unrated, and with nothing measured; what the failure says is text and no markup."""
+
+    def fail(record):
+        nothing = dict.fromkeys(record.features, float("nan"))
+        return replace(
+            record,
+            success=False,
+            failure="the way is <blocked>",
+            actions=[],
+            features=nothing,
+            predicted_features=nothing,
+            ratings=[None] * 5,
+            plan_cost=float("inf"),
+            timing={},
+        )
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=1, change=fail)
+    (tmp_path / "summary.json").write_text("{}")
+    page = mut.write_report(tmp_path)[0]
+    assert "1 of 1 episode failed (1 × the way is <blocked>)" in Page(page.read_text(encoding="utf-8")).text
+
+
+def test_a_plain_run_of_an_unknown_patient_is_shown_with_intervals_and_without_truth(tmp_path, simulate_results):
+    def sure(record):
+        return replace(record, weights_std=[0.1 / (1 + record.episode)] * 5)
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), change=sure)
+    path = tmp_path / "speed_oriented" / "seed_0" / "episodes.jsonl"
+    path.write_text(path.read_text().replace('"profile": "speed_oriented"', '"profile": "custom"'))
+    text = Page(mut.write_report(path.parent)[0].read_text(encoding="utf-8")).text
+    assert "90 % credible interval" in text
+    assert "runs know what matters most" not in text
+
+
+def test_no_results_are_one_line(tmp_path):
+    with pytest.raises(BadInput, match="has no episodes"):
+        mut.write_report(tmp_path)
+
+
+def test_a_report_that_cannot_be_written_is_refused_before_any_work(tmp_path, simulate_results):
+    simulate_results(tmp_path / "results", profiles=("speed_oriented",))
+    (tmp_path / "file").touch()
+    with pytest.raises(BadInput, match="folder cannot be made"):
+        mut.write_report(tmp_path / "results", tmp_path / "file")

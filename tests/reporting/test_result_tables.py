@@ -1,0 +1,99 @@
+"""The tables of a report, cell by cell, against figures counted by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from mala_drake.reporting import result_tables as mut
+from mala_drake.reporting.quantiles import Spread
+from mala_drake.reporting.results import load_results
+
+
+@pytest.mark.parametrize(
+    ("figures", "text"),
+    [
+        (Spread(1.0, 1.0, 1.0), "1"),
+        (Spread(2.0, 1.0, 3.5), "2 (1–3.5)"),
+        (Spread(10.0, 2.0, math.inf), "10 (2–never)"),
+        (Spread(math.inf, math.inf, math.inf), "never"),
+        (Spread(math.nan, math.nan, math.nan), "–"),
+    ],
+)
+def test_counts_have_a_decimal_only_where_there_is_something_behind_it(figures, text):
+    assert mut.counts(figures) == text
+
+
+def test_only_all_is_a_hundred_percent():
+    assert mut.percent(1000, 1000) == "100 %"
+    assert mut.percent(9999, 10000) == "99.9 %"
+    assert mut.percent(1, 2) == "50 %"
+    assert mut.percent(0, 3) == "0 %"
+
+
+def set_distance(distances):
+    def change(record):
+        return replace(record, distance_to_true=distances[record.seed][record.episode], plan_variant="p")
+
+    return change
+
+
+@pytest.fixture
+def two_learners(tmp_path, simulate_results):
+    ours = set_distance({0: [0.1, 0.02], 1: [0.2, 0.04]})
+    papers = set_distance({0: [0.3, 0.2], 1: [0.3, 0.1]})
+    one = {"profiles": ("speed_oriented",), "episodes": 2}
+    simulate_results(tmp_path, **one, change=ours)
+    simulate_results(tmp_path, **one, change=papers, condition="projected_gradient")
+    simulate_results(tmp_path, **one, change=papers, condition="bandit")
+    return load_results(tmp_path)
+
+
+def test_ours_the_papers_learner_and_the_paper_stand_beside_each_other(two_learners):
+    profile, total = mut.convergence_table(two_learners).groups
+    assert [row[:5] for row in profile] == [
+        ("Speed oriented, main", "2/2", "1.5 (1.2–1.8)", "0.030 (0.025–0.035)", "0.030 (0.025–0.035)"),
+        (
+            "Speed oriented, projected gradient",
+            "1/2",
+            "never",
+            "0.150 (0.125–0.175)",
+            "0.150 (0.125–0.175)",
+        ),
+        ("Speed oriented, paper", "5/5", "2", "0.023 ± 0.008", "0.043"),
+    ]
+    assert profile[2][6:] == ("3 or 4", "100 %", "–")
+    assert [row[0] for row in total] == ["All, main", "All, projected gradient"]
+
+
+def test_every_condition_has_a_row(two_learners):
+    table = mut.condition_table(two_learners)
+    assert table is not None
+    rows = [row for group in table.groups for row in group]
+    assert [row[:3] for row in rows] == [
+        ("main", "2", "2/2"),
+        ("bandit", "2", "1/2"),
+        ("projected gradient", "2", "1/2"),
+    ]
+
+
+def test_one_condition_needs_no_table_of_conditions(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",))
+    assert mut.condition_table(load_results(tmp_path)) is None
+
+
+def test_times_are_medians_over_episodes(tmp_path, simulate_results):
+    def take(record):
+        return replace(record, timing={"wall_s": 1.0 + record.episode, "plan_p95_ms": 2.0})
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=3, change=take)
+    table = mut.timing_table(load_results(tmp_path))
+    assert table is not None
+    assert table.groups == ((("wall, s an episode", "2", "1.5", "2.5", "3"), ("plan p95, ms", "2", "2", "2", "2")),)
+
+
+def test_times_that_are_not_told_make_no_table(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), change=lambda record: replace(record, timing={}))
+    assert mut.timing_table(load_results(tmp_path)) is None
