@@ -70,7 +70,7 @@ def run(
     profile: Annotated[str | None, typer.Option(help="Patient profile, for example safety_first.")] = None,
     episodes: Annotated[int | None, typer.Option(help="Number of episodes.")] = None,
     seed: Annotated[int | None, typer.Option(help="Random seed.")] = None,
-    solver: Annotated[str | None, typer.Option(help="MPC solver: snopt or ipopt.")] = None,
+    solver: Annotated[str | None, typer.Option(help="MPC solver: snopt, ipopt or rti.")] = None,
     out: Annotated[
         Path, typer.Option(help="Folder for episodes.jsonl and summary.json; those of an earlier run are replaced.")
     ] = Path("results"),

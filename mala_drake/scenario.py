@@ -94,10 +94,16 @@ class ControlConfig:
     """The model predictive controller and the rules of a leg."""
 
     solver: str = "snopt"
+    sqp_iterations: int = 20  # Of solver rti, at most, per sample; 1 is the real-time iteration.
     horizon: int = 20  # Stages of one control period.
     step_budget: int = 400  # Control steps of one leg.
     waypoint_iterations: int = 50  # Control steps to the next waypoint.
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
+
+    @property
+    def solver_options(self) -> dict[str, Any]:
+        """What `MakeSolver` is to be told besides the name."""
+        return {"sqp_iterations": self.sqp_iterations} if self.solver == "rti" else {}
 
 
 @dataclass
@@ -229,6 +235,7 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("planner.max_actions", scenario.planner.max_actions, 1, 10_000),
         ("planner.max_expansions", scenario.planner.max_expansions, 1, 100_000_000),
         ("control.horizon", control.horizon, 2, 200),
+        ("control.sqp_iterations", control.sqp_iterations, 1, 1_000),
         ("control.step_budget", control.step_budget, 1, 100_000),
         ("control.waypoint_iterations", control.waypoint_iterations, 1, 100_000),
         ("control.tolerated_failures", control.tolerated_failures, 0, 1_000),

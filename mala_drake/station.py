@@ -195,7 +195,7 @@ class _StationBuilder:
                 guide=LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules),
                 congestion=self._congestion,
                 problem=problem,
-                solver=MakeSolver(scenario.control.solver, problem),
+                solver=MakeSolver(scenario.control.solver, problem, **scenario.control.solver_options),
             ),
         )
         self._executor = self._add("in_place_executor", InPlaceExecutor(ward))

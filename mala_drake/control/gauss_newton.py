@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from . import model
 from .buffered_function import BufferedFunction, densified
+from .condensing import state_sensitivities
 from .optimal_control_problem import OptimalControlProblem
 from .shooting import LIMIT_BUFFER, OBSTACLE_BUFFER, limit_margins, obstacle_margins, parameter_pieces
 
@@ -63,14 +64,10 @@ class GaussNewtonModel:
         self._stage_model()
         n, m, horizon = model.STATE_SIZE, model.CONTROL_SIZE, self._horizon
         transitions, inputs, weights = (result.T for result in self._stage_model.results)
-        sensitivities = np.zeros((horizon, n, m * horizon))  # d z_{k+1} / d U.
+        sensitivities = state_sensitivities(
+            transitions.reshape(horizon, n, n).transpose(0, 2, 1), inputs.reshape(horizon, m, n).transpose(0, 2, 1)
+        )
         weighted = np.zeros_like(sensitivities)
-        for k in range(horizon):
-            reached = sensitivities[k]
-            if k > 0:
-                transition = transitions[n * k : n * (k + 1)].T
-                np.matmul(transition, sensitivities[k - 1, :, : m * k], out=reached[:, : m * k])
-            reached[:, m * k : m * (k + 1)] = inputs[m * k : m * (k + 1)].T
         np.matmul(weights.reshape(horizon, n, n), sensitivities, out=weighted)
         size = m * horizon
         hessian = sensitivities.reshape(-1, size).T @ weighted.reshape(-1, size)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .model import ControlIndex, StateIndex
+from .model import StateIndex
 from .parameters import MpcParameters
 
 Vector = NDArray[np.float64]
@@ -31,17 +31,22 @@ def _usable(warm_start: ArrayLike | None) -> list[Vector]:
 
 
 def _follow(state: Vector, wanted: Vector, parameters: MpcParameters, period: float) -> Vector:
-    """Controls whose velocities approach those of `wanted`, shape (N, 6), as fast as the input set admits."""
-    controls = np.zeros((len(wanted), len(ControlIndex)))
-    lower, upper = parameters.inputs.lower, parameters.inputs.upper
-    velocity, yaw_rate = state[StateIndex.FORWARD_VELOCITY], state[StateIndex.YAW_RATE]
-    for control, goal in zip(controls, wanted, strict=True):
-        acceleration = (goal[StateIndex.FORWARD_VELOCITY] - velocity) / period
+    """Controls whose velocities approach those of `wanted`, shape (N, 6), as fast as the input set admits.
+
+    Plain numbers: twenty stages one after another are ten times slower as arrays of three.
+    """
+    (low, low_brake, low_turn), (high, high_brake, high_turn) = (
+        bound.tolist() for bound in (parameters.inputs.lower, parameters.inputs.upper)
+    )
+    velocity, yaw_rate = float(state[StateIndex.FORWARD_VELOCITY]), float(state[StateIndex.YAW_RATE])
+    controls = []
+    for speed, turn in wanted[:, [StateIndex.FORWARD_VELOCITY, StateIndex.YAW_RATE]].tolist():
+        acceleration = (speed - velocity) / period
         braking = max(-acceleration, 0.0) / 2 if velocity > 0 else 0.0
-        control[ControlIndex.PROPULSION] = acceleration + braking
-        control[ControlIndex.BRAKE] = braking
-        control[ControlIndex.YAW_ACCELERATION] = (goal[StateIndex.YAW_RATE] - yaw_rate) / period
-        control[:] = np.clip(control, lower, upper)
-        velocity += period * (control[ControlIndex.PROPULSION] - control[ControlIndex.BRAKE])
-        yaw_rate += period * control[ControlIndex.YAW_ACCELERATION]
-    return controls
+        propulsion = min(max(acceleration + braking, low), high)
+        braking = min(max(braking, low_brake), high_brake)
+        turning = min(max((turn - yaw_rate) / period, low_turn), high_turn)
+        controls.append((propulsion, braking, turning))
+        velocity += period * (propulsion - braking)
+        yaw_rate += period * turning
+    return np.array(controls)

@@ -12,10 +12,11 @@ from pydrake.solvers import MathematicalProgramResult, SolverInterface, SolverOp
 
 from mala_drake.errors import BadInput
 
-from .buffered_function import BufferedFunction
+from .evaluation import Evaluation
 from .gauss_newton import GaussNewtonModel
 from .initial_guess import initial_guesses
 from .optimal_control_problem import OptimalControlProblem
+from .optimality import cost_scale, residual, status_of
 from .parameters import InputParameters, MpcParameters
 from .shooting_program import Run, ShootingProgram
 from .solution import Solution, Status, invalid_solution, read_only
@@ -23,8 +24,6 @@ from .solution import Solution, Status, invalid_solution, read_only
 Vector = NDArray[np.float64]
 
 _LOGGER = logging.getLogger(__name__)
-_SOLVED = 10.0  # A point within this many tolerances is optimal, whatever the solver thinks of its line search.
-_INACCURATE = 100.0
 
 
 class MathematicalProgramSolver(ABC):
@@ -65,7 +64,7 @@ class MathematicalProgramSolver(ABC):
         self._hard_clearance = hard_clearance
         self._program = ShootingProgram(problem, hard_clearance=hard_clearance)
         self._gauss_newton = GaussNewtonModel(problem)
-        self._trajectory = BufferedFunction(problem.trajectory)
+        self._evaluation = Evaluation(problem)
         self._solver = self._make_solver()
         self._options = SolverOptions()
         self._rounds = -(-iteration_limit // self.round_length)
@@ -94,11 +93,12 @@ class MathematicalProgramSolver(ABC):
         if not (np.isfinite(packed).all() and np.isfinite(state).all()):
             return invalid_solution(self._problem.layout)
         self._program.set_parameters(state, packed)
-        self._trajectory.arguments[1][:, 0], self._trajectory.arguments[2][:, 0] = state, packed
+        self._evaluation.set(state, packed)
 
         # An absurd state overflows somewhere; every result is checked for that, so numpy need not warn as well.
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._run_rounds(self._best_guess(state, parameters, warm_start), packed, parameters)
+            guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
+            return self._run_rounds(self._evaluation.best(guesses), packed, parameters)
 
     def _run_rounds(self, origin: Vector, packed: Vector, parameters: MpcParameters) -> Solution:
         evaluations = 0
@@ -112,10 +112,9 @@ class MathematicalProgramSolver(ABC):
 
     def _run_round(self, origin: Vector, packed: Vector, parameters: MpcParameters, evaluations: int) -> Solution:
         """One run of the solver from `origin`, preconditioned there; `evaluations` were spent before."""
-        states, margins, *_ = self._simulate(origin)
+        states, margins, *_ = self._evaluation.trajectory(origin)
         hessian = self._gauss_newton.hessian(states, origin, packed, parameters.stage.control_weights)
-        # The largest weight sets the size of the cost: measured in it, one tolerance fits every action.
-        scale = 1.0 / max(parameters.terminal.weights.max(), parameters.stage.state_weights.max(), 1.0)
+        scale = cost_scale(parameters)
         run = self._program.run(
             self._solver,
             self._options,
@@ -127,26 +126,14 @@ class MathematicalProgramSolver(ABC):
         )
         return self._report(run, scale, np.diag(hessian), parameters.inputs, evaluations)
 
-    def _best_guess(self, state: Vector, parameters: MpcParameters, warm_start: ArrayLike | None) -> Vector:
-        """The guess of lowest cost: a warm start that went bad must not decide which local optimum is found."""
-        guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
-        costs = [self._program.evaluate(guess)[0] for guess in guesses]
-        return guesses[int(np.argmin(np.where(np.isfinite(costs), costs, np.inf)))]
-
-    def _simulate(self, controls: Vector) -> list[Vector]:
-        """States, obstacle margins, limit margins and both multipliers along `controls`, one row a stage."""
-        self._trajectory.arguments[0][:] = controls.T
-        self._trajectory()
-        return [np.array(result.T, order="C") for result in self._trajectory.results]
-
     def _report(self, run: Run, scale: float, curvature: Vector, inputs: InputParameters, evaluations: int) -> Solution:
         controls = run.controls
         broken = not np.isfinite(controls).all()
         if broken:
             controls = np.clip(np.zeros_like(controls), inputs.lower, inputs.upper)
-        cost, gradient = self._program.evaluate(controls)
-        states, obstacle_margins, _, obstacle_duals, limit_duals = self._simulate(controls)
-        optimality = _optimality(controls, scale * gradient, scale * curvature, inputs)
+        cost, gradient = self._evaluation.cost_and_gradient(controls)
+        states, obstacle_margins, _, obstacle_duals, limit_duals = self._evaluation.trajectory(controls)
+        optimality = residual(controls, scale * gradient, scale * curvature, inputs)
         failure = self._program.failure
         if failure is not None:
             _LOGGER.warning("%s: the cost could not be evaluated: %s", self.name, failure)
@@ -169,12 +156,10 @@ class MathematicalProgramSolver(ABC):
 
         With hard clearance only the solver knows, because the point's residual leaves those constraints out.
         """
-        if result.is_success() or (not self._hard_clearance and optimality <= _SOLVED * self._tolerance):
+        if result.is_success():
             return Status.SOLVED
-        if self._hit_iteration_limit(result):
-            return Status.ITERATION_LIMIT
-        close = not self._hard_clearance and optimality <= _INACCURATE * self._tolerance
-        return Status.INACCURATE if close else Status.NUMERICAL
+        stopped = Status.ITERATION_LIMIT if self._hit_iteration_limit(result) else Status.NUMERICAL
+        return stopped if self._hard_clearance else status_of(optimality, self._tolerance, stopped)
 
     @abstractmethod
     def _make_solver(self) -> SolverInterface:
@@ -187,14 +172,3 @@ class MathematicalProgramSolver(ABC):
     @abstractmethod
     def _hit_iteration_limit(self, result: MathematicalProgramResult) -> bool:
         """Whether the solver stopped for its iteration limit."""
-
-
-def _optimality(controls: Vector, gradient: Vector, curvature: Vector, inputs: InputParameters) -> float:
-    """The KKT residual: the largest component of the gradient projected on the box, over its Hessian's diagonal root.
-
-    With `gradient` and `curvature`, shape (3 N,), those of the scaled cost, it is the residual in variables of unit
-    curvature. Zero exactly at a KKT point.
-    """
-    curvature = curvature.reshape(controls.shape)
-    step = np.clip(controls - gradient / curvature, inputs.lower, inputs.upper) - controls
-    return float((np.abs(step) * np.sqrt(curvature)).max())

@@ -55,6 +55,11 @@ class OptimalControlProblem:
         return build_expressions(self.layout, self.period)
 
     @cached_property
+    def cost(self) -> casadi.Function:
+        """(U, z_0, p) -> cost."""
+        return densified("cost", self._inputs, [self.expressions.cost])
+
+    @cached_property
     def cost_and_gradient(self) -> casadi.Function:
         """(U, z_0, p) -> (cost, d cost / d U); U and the gradient have shape (3, N)."""
         problem = self.expressions

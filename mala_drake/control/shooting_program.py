@@ -12,6 +12,7 @@ from pydrake.autodiffutils import AutoDiffXd
 from pydrake.solvers import MathematicalProgram, MathematicalProgramResult, SolverInterface, SolverOptions
 
 from .buffered_function import BufferedFunction
+from .condensing import whitening
 from .hard_clearance import HardClearance
 from .model import CONTROL_SIZE
 from .optimal_control_problem import OptimalControlProblem
@@ -67,12 +68,6 @@ class ShootingProgram:
         self._function.arguments[1][:, 0] = initial_state
         self._function.arguments[2][:, 0] = packed
 
-    def evaluate(self, controls: Vector) -> tuple[float, Vector]:
-        """Cost and gradient, shape (N, 3), at `controls`, shape (N, 3)."""
-        self._point[:] = controls.ravel()
-        self._function()
-        return float(self._function.results[0][0, 0]), self._gradient.reshape(self._horizon, CONTROL_SIZE).copy()
-
     def run(
         self,
         solver: SolverInterface,
@@ -97,7 +92,8 @@ class ShootingProgram:
         """
         self._failure, self.evaluations, self._scale = None, 0, scale
         self._origin = origin.ravel().copy()
-        self._transform = _whitening(scale * hessian)
+        # Drake ends the process over a constraint with entries that are not finite: `whitening` lets none get there.
+        self._transform = whitening(scale * hessian)
         lower, upper = (np.tile(bound, self._horizon) - self._origin for bound in (inputs.lower, inputs.upper))
         self._box.evaluator().UpdateCoefficients(self._transform, lower, upper)
         if self._clearance is not None:
@@ -131,15 +127,3 @@ class ShootingProgram:
         except Exception as error:
             self._failure = error
         return AutoDiffXd(_UNUSABLE, np.zeros(len(variables)))
-
-
-def _whitening(hessian: Vector) -> Vector:
-    """T with T' hessian T = I; the identity where the numbers overflow, so that the solve can fail in its own way.
-
-    Drake ends the process over a constraint with entries that are not finite, so none may get there.
-    """
-    try:
-        transform = np.linalg.inv(np.linalg.cholesky(hessian)).T.copy()
-    except np.linalg.LinAlgError:
-        return np.eye(len(hessian))
-    return transform if np.isfinite(transform).all() else np.eye(len(hessian))

@@ -30,6 +30,7 @@ class Solver(Protocol):
 _SOLVERS = {
     "snopt": ("snopt", "SnoptShootingSolver"),
     "ipopt": ("ipopt", "IpoptShootingSolver"),
+    "rti": ("rti", "RealTimeIterationSolver"),
 }
 
 SOLVER_NAMES = tuple(_SOLVERS)

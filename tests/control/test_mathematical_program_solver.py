@@ -1,4 +1,4 @@
-"""Both solvers: optimality, multipliers, parameter groups, warm starts, closed loops and faults."""
+"""All solvers: optimality, multipliers, parameter groups, warm starts, closed loops and faults."""
 
 import dataclasses
 
@@ -18,7 +18,7 @@ def snopt(problem):
     return MakeSolver("snopt", problem)
 
 
-@pytest.fixture(scope="module", params=["snopt", "ipopt"])
+@pytest.fixture(scope="module", params=["snopt", "ipopt", "rti"])
 def solver(request, problem):
     return MakeSolver(request.param, problem)
 

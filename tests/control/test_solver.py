@@ -7,13 +7,13 @@ import mala_drake.control.solver as mut
 from mala_drake.errors import BadInput
 
 
-@pytest.mark.parametrize("name", ["snopt", "ipopt"])
+@pytest.mark.parametrize("name", ["snopt", "ipopt", "rti"])
 def test_a_solver_is_made_by_its_name(problem, name):
     assert mut.MakeSolver(name, problem).name == name
 
 
 def test_an_unknown_name_is_told_with_the_known_ones(problem):
-    with pytest.raises(BadInput, match=r"'fmincon'.*snopt, ipopt"):
+    with pytest.raises(BadInput, match=r"'fmincon'.*snopt, ipopt, rti"):
         mut.MakeSolver("fmincon", problem)
 
 
