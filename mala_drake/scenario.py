@@ -180,7 +180,7 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
         if weights:
             validated_weights(weights, where=at + name)
     ward = _checked_ward(scenario, at)
-    kinds = sorted({item.kind for item in all_items(ward)})
+    kinds = sorted({item.kind for item in all_items(ward, ("medication",))})
     for i, kind in enumerate(scenario.world.wrong_items):
         _one_of(f"{at}world.wrong_items[{i}]", kind, kinds)
     _check_obstacles(scenario, ward, at)

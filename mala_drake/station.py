@@ -115,6 +115,9 @@ class _StationBuilder:
         self._ward = ward
         self._meshcat = meshcat
         self._congestion = Congestion(ward)
+        self._names = task_names(scenario.task, episodes=scenario.episodes)
+        # Every box costs time at each step of the plant: there are only those that some episode needs.
+        self._kept = all_items(ward, frozenset(self._names))
         self._builder = DiagramBuilder()
         self._plant: MultibodyPlant
         self._robot: CareRobot
@@ -128,7 +131,7 @@ class _StationBuilder:
         self._plant, self._scene_graph = MakeCarePlant(self._builder)
         AddWard(self._plant, self._ward, visible=self._meshcat is not None)
         self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
-        self._items = AddItems(self._plant, self._scene_graph, all_items(self._ward), self._robot)
+        self._items = AddItems(self._plant, self._scene_graph, self._kept, self._robot)
         for config in self._scenario.world.obstacles:
             _add_obstacle(self._plant, config)
         home = next(place for place in self._ward.places if place.category == "home")
@@ -168,12 +171,12 @@ class _StationBuilder:
         """Scheduler, planner, grounding, control, and the world that answers."""
         scenario, ward = self._scenario, self._ward
         places = {place.name: (place.x, place.y, place.yaw) for place in ward.places}
-        names = task_names(scenario.task, episodes=scenario.episodes)
-        self._scheduler = self._add("scheduler", Scheduler(tasks=names))
+        self._scheduler = self._add("scheduler", Scheduler(tasks=self._names))
         self._task_planner = self._add(
             "task_planner",
             TaskPlanner(
                 ward,
+                tasks=sorted(set(self._names)),
                 max_actions=scenario.planner.max_actions,
                 max_expansions=scenario.planner.max_expansions,
             ),
@@ -198,11 +201,12 @@ class _StationBuilder:
                 solver=MakeSolver(scenario.control.solver, problem, **scenario.control.solver_options),
             ),
         )
-        self._executor = self._add("in_place_executor", InPlaceExecutor(ward))
+        self._executor = self._add("in_place_executor", InPlaceExecutor(ward, items=self._kept))
         self._world = self._add(
             "world",
             World(
                 ward,
+                items=self._kept,
                 wrong_item_probability=scenario.world.wrong_item_probability,
                 wrong_items=scenario.world.wrong_items,
                 seed=scenario.random_seed,

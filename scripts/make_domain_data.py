@@ -9,7 +9,7 @@ from mala_drake.planning.features import write_problem
 from mala_drake.resources import domains_folder
 from mala_drake.ward.ward_map import LoadWard
 
-PROBLEMS = {"medication": "problem_med.pddl"}
+PROBLEMS = {"medication": "problem_med.pddl", "meal": "problem_meal.pddl"}
 
 
 def main() -> None:

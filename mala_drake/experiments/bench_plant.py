@@ -70,7 +70,7 @@ class _Rig:
     """A robot on a flat floor with some of its systems; what the others would send is constant."""
 
     def __init__(self, systems: Collection[str], carried: int) -> None:
-        items = all_items(LoadWard()) if "magnet" in systems else ()
+        items = all_items(LoadWard(), ("medication",)) if "magnet" in systems else ()
         self._builder = DiagramBuilder()
         self._plant, scene_graph = MakeCarePlant(self._builder)
         self._robot = AddCareRobot(self._plant, scene_graph)

@@ -109,21 +109,25 @@ def timing(*, wall_seconds: float, mpc_seconds: Sequence[float], plan_seconds: S
     }
 
 
-def plan_variant(actions: Sequence[str]) -> str:
-    """The choices that tell one medication plan from another: pharmacy, supply room, order and bedside.
+def plan_variant(actions: Sequence[str], task: str = "medication") -> str:
+    """The choices that tell one plan of a task from another.
 
-    They are read from the executed actions; the last one of each kind counts.
+    Of a medication round: pharmacy, supply room, order and bedside; of a meal: dish and bedside. They are read from the
+    executed actions; the last one of each kind counts.
     """
     names = [action.strip("()").split()[0] for action in actions]
-    pharmacy = supply = side = "none"
+    sides = ["left" if "left" in name else "right" for name in names if name.startswith("approach_")]
+    side = sides[-1] if sides else "none"
+    if task == "meal":
+        dishes = [name.removeprefix("choose_") for name in names if name.startswith("choose_")]
+        return "/".join((dishes[-1] if dishes else "none", side))
+    pharmacy = supply = "none"
     order: list[str] = []
     for name in names:
         if name.startswith("go_to_pharmacy_"):
             pharmacy = name.removeprefix("go_to_pharmacy_")
         elif name.startswith("go_to_supply_"):
             supply = name.removeprefix("go_to_supply_").upper()
-        elif name.startswith("approach_"):
-            side = "left" if "left" in name else "right"
         if name.startswith("collect_") and (kind := name.split("_")[1]) not in order:
             order.append(kind)
     return "/".join((pharmacy, supply, "-".join(order) or "none", side))

@@ -81,15 +81,16 @@ class EpisodeWatch:
         after: Preferences = self._read("preference_learner", "preferences")
         safety = self._read("safety_monitor", "safety")
         legs = [*self._legs, *self._leg_under_way()]
+        task = report.task or self._scenario.task
         return EpisodeRecord(
             episode=self._episode,
-            task=report.task or self._scenario.task,
+            task=task,
             profile=self._scenario.profile_name,
             seed=self._scenario.random_seed,
             success=report.success,
             failure=None if report.success else (report.failure or "unknown"),
             actions=self._actions,
-            plan_variant=plan_variant(self._actions),
+            plan_variant=plan_variant(self._actions, task),
             plan_cost=report.plan_cost,
             replans=report.replans,
             features=by_criterion(report.features),

@@ -8,23 +8,27 @@ from collections.abc import Collection, Iterable
 from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionKind, Atom
 from mala_drake.messages import SymbolicState as ObservedState
-from mala_drake.planning.features import IN_TRANSIT, fill_problem, leg_fluents, location_name, targets
+from mala_drake.planning.features import IN_TRANSIT, STOCK_PREDICATES, fill_problem, leg_fluents, location_name
 from mala_drake.planning.leg_costs import NO_COST, LegCosts, Pose
 from mala_drake.planning.source import read_text
 from mala_drake.planning.state import Amount, Name, SymbolicState
 from mala_drake.planning.syntax import Fact
 from mala_drake.planning.task import PlanningTask
+from mala_drake.planning.ways import WAY_PREDICATES, targets
 from mala_drake.preferences import CRITERIA
 from mala_drake.resources import domains_folder
 from mala_drake.ward.ward_map import LoadWard, Ward
 
-TASK_NAMES = ("medication",)
+TASK_NAMES = ("medication", "meal")
 """The tasks that a scheduler may issue."""
 
-_FILES = {"medication": ("domain_med.pddl", "problem_med.pddl")}
+_FILES = {
+    "medication": ("domain_med.pddl", "problem_med.pddl"),
+    "meal": ("domain_meal.pddl", "problem_meal.pddl"),
+}
 _CHARGE = "battery-soc"
 _BATTERY = CRITERIA.index("battery")
-_NOT_OBSERVED = frozenset({"open-way", "requested-medicine", "requested-supplement"})
+_NOT_OBSERVED = frozenset({*WAY_PREDICATES.values(), "requested-medicine", "requested-supplement", "requires_cooking"})
 """Predicates that the problem and the planner know, not the grounding."""
 
 
@@ -63,9 +67,11 @@ class CareTask:
         self.planning_task = PlanningTask.parse(
             read_text(domain), text, domain_name=domain.name, problem_name=problem.name
         )
+        self._way = WAY_PREDICATES[name]
         self._places = {location_name(place.name): place.name for place in ward.places}
         self._targets = tuple(place.name for place in targets(ward, name))
-        missing = [each for each in self.planning_task.description.objects_of(("location",)) if not self._knows(each)]
+        self._locations = frozenset(self.planning_task.description.objects_of(("location",)))
+        missing = sorted(each for each in self._locations if not self._knows(each))
         if missing:
             raise BadInput(f"ward {ward.name}", f"has no place {missing[0]}", "every location of the domain")
 
@@ -92,9 +98,9 @@ class CareTask:
         """
         initial = self.planning_task.initial_state
         facts = {fact for fact in initial.facts if fact[0] in _NOT_OBSERVED}
-        facts -= {("open-way", *pair) for pair in closed}
+        facts -= {(self._way, *pair) for pair in closed}
         facts |= {fact for fact in map(_lower, observed.atoms) if fact[0] != "at" and self._is_observable(fact)}
-        at_place = observed.place != "" and observed.place == standing_at
+        at_place = observed.place == standing_at and location_name(observed.place) in self._locations
         facts.add(("at", self._robot, location_name(observed.place) if at_place else IN_TRANSIT))
         state = SymbolicState(frozenset(facts), initial.values)
         if not at_place:
@@ -112,7 +118,7 @@ class CareTask:
         return (initial, in_transit)
 
     def mismatch(self, expected: SymbolicState, observed: ObservedState) -> tuple[Atom, ...]:
-        """The atoms about the robot in which the observed state differs from the expected one, sorted.
+        """The atoms in which the observed state differs from the expected one, sorted.
 
         What is in stock is not the robot's doing: it is observed, not predicted.
         """
@@ -154,7 +160,7 @@ class CareTask:
         if action.previous_place:
             return ((location_name(action.previous_place), goal), (IN_TRANSIT, goal))
         facts = sorted(self.planning_task.initial_state.facts)
-        return tuple((fact[1], goal) for fact in facts if fact[0] == "open-way" and fact[2] == goal)
+        return tuple((fact[1], goal) for fact in facts if fact[0] == self._way and fact[2] == goal)
 
     def _transit_fluents(self, pose: Pose) -> dict[Name, Amount]:
         if not all(map(math.isfinite, pose)):
@@ -171,8 +177,8 @@ class CareTask:
         return next((fact[2] for fact in state.facts if fact[:2] == ("at", self._robot)), IN_TRANSIT)
 
     def _own(self, facts: Iterable[Fact]) -> set[Fact]:
-        nowhere = ("at", self._robot, IN_TRANSIT)
-        return {fact for fact in facts if len(fact) > 1 and fact[1] == self._robot and fact != nowhere}
+        left_out = {*_NOT_OBSERVED, *STOCK_PREDICATES.values()}
+        return {fact for fact in facts if fact[0] not in left_out and fact != ("at", self._robot, IN_TRANSIT)}
 
     def _is_observable(self, fact: Fact) -> bool:
         description = self.planning_task.description

@@ -7,17 +7,20 @@ as PDDL does not tell cases apart.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from pathlib import Path
 
-from mala_drake.clock import TICK
+from mala_drake.clock import ROUNDING, TICK
 from mala_drake.errors import BadInput
 from mala_drake.planning.leg_costs import LegCost, LegCosts
+from mala_drake.planning.ways import WAY_PREDICATES, targets, ways
+from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, approach_error
-from mala_drake.ward.in_place_actions import CHARGE, SECONDS, Verb
+from mala_drake.ward.in_place_actions import VERBS, InPlaceAction, Verb
 from mala_drake.ward.items import all_items
-from mala_drake.ward.ward_map import Place, Ward
+from mala_drake.ward.ward_map import Ward
 
 IN_TRANSIT = "in_transit"
 """The location of a robot that is at no named place."""
@@ -25,8 +28,9 @@ IN_TRANSIT = "in_transit"
 Fact = tuple[str, ...]
 Fluents = dict[Fact, Decimal]
 
-_TARGETS: Mapping[str, tuple[str, ...]] = {"medication": ("pharmacy", "supply", "charger", "bedside")}
-_STARTS = ("home",)  # Categories of places that a robot leaves but is never sent to.
+STOCK_PREDICATES: Mapping[str, str] = {"medication": "available", "meal": "ingredient_available"}
+"""What each task's domain calls a thing that is in stock at a location."""
+
 _UNITS = ("second", "risk", "charge", "discomfort", "error")  # Of the unscaled features, in their order.
 _BEGIN = ";; BEGIN generated"
 _END = ";; END generated"
@@ -35,11 +39,6 @@ _END = ";; END generated"
 def location_name(place: str) -> str:
     """The planning domain's name of a place of the map."""
     return place.lower()
-
-
-def targets(ward: Ward, task: str) -> tuple[Place, ...]:
-    """The places that a task's movements lead to, in the order of the map."""
-    return tuple(place for place in ward.places if place.category in _TARGETS[task])
 
 
 def leg_fluents(cost: LegCost, start: str, goal: str) -> Fluents:
@@ -54,19 +53,17 @@ def leg_fluents(cost: LegCost, start: str, goal: str) -> Fluents:
 
 def leg_data(costs: LegCosts, ward: Ward, task: str) -> tuple[tuple[Fact, ...], Fluents]:
     """The open ways of a task, and the numbers of each."""
-    goals = targets(ward, task)
-    starts = [place for place in ward.places if place.category in _STARTS or place in goals]
-    ways: list[Fact] = []
+    predicate = WAY_PREDICATES[task]
+    open_ways: list[Fact] = []
     fluents: Fluents = {}
-    for start in starts:
-        for goal in goals:
-            cost = None if start is goal else costs.between(start.name, goal.name)
-            if cost is not None:
-                pair = location_name(start.name), location_name(goal.name)
-                ways.append(("open-way", *pair))
-                fluents |= leg_fluents(cost, *pair)
-    ways += [("open-way", IN_TRANSIT, location_name(goal.name)) for goal in goals]
-    return tuple(ways), fluents
+    for start, goal in ways(ward, task):
+        cost = costs.between(start.name, goal.name)
+        if cost is not None:
+            pair = location_name(start.name), location_name(goal.name)
+            open_ways.append((predicate, *pair))
+            fluents |= leg_fluents(cost, *pair)
+    open_ways += [(predicate, IN_TRANSIT, location_name(goal.name)) for goal in targets(ward, task)]
+    return tuple(open_ways), fluents
 
 
 def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Fluents:
@@ -100,14 +97,24 @@ def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Flue
 def table_fluents(task: str) -> Fluents:
     """What actions at a place take, and how much of a scaled feature one unit is."""
     fluents: Fluents = {}
-    for verb in Verb:
+    for verb in VERBS[task]:
         name = verb.value.replace("_", "-")
-        fluents[(f"{name}-time",)] = _rounded(SECONDS[verb] + TICK, 2)  # It takes a tick to see that it is done.
-        if verb is not Verb.RECHARGE:
-            fluents[(f"{name}-battery",)] = _rounded(CHARGE[verb], 4)
+        for dish in DISHES if verb is Verb.ASSEMBLE else ("",):
+            action = InPlaceAction(verb, dish=dish)
+            about = (dish,) if dish else ()
+            fluents[(f"{name}-time", *about)] = _rounded(_until_known(action.seconds), 2)
+            if verb is not Verb.RECHARGE:
+                fluents[(f"{name}-battery", *about)] = _rounded(action.charge, 4)
+    if task == "meal":
+        fluents |= {("presentation-error", d.name): _rounded(d.presentation_error, 4) for d in DISHES.values()}
     for unit, scale in zip(_UNITS, FEATURE_SCALES[task].as_array(), strict=True):
         fluents[(f"feature-per-{unit}",)] = _rounded(1.0 / scale, 6)
     return fluents
+
+
+def _until_known(seconds: float) -> float:
+    """When the planner sees that an action is done: it ends with a tick, and it takes another one to know."""
+    return (math.ceil(seconds / TICK - ROUNDING) + 1) * TICK
 
 
 def fill_problem(text: str, ward: Ward, task: str, *, costs: LegCosts | None = None, name: str = "problem") -> str:
@@ -135,12 +142,12 @@ def write_problem(path: Path, ward: Ward, task: str, *, costs: LegCosts | None =
 
 
 def _generated_lines(ward: Ward, task: str, costs: LegCosts) -> Iterator[str]:
-    ways, legs = leg_data(costs, ward, task)
-    for item in all_items(ward):
-        yield _fact(("available", item.kind, location_name(item.place)))
+    open_ways, legs = leg_data(costs, ward, task)
+    stock = {(STOCK_PREDICATES[task], item.kind, location_name(item.place)): None for item in all_items(ward, (task,))}
+    yield from map(_fact, stock)
     for part in (table_fluents(task), place_fluents(costs, ward, task, legs)):
         yield from (_equation(fluent, value) for fluent, value in part.items())
-    for way in ways:
+    for way in open_ways:
         yield _fact(way)
         pair = way[1:]
         yield from (_equation(fluent, value) for fluent, value in legs.items() if fluent[1:] == pair)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from pydrake.common.value import Value
 from pydrake.systems.framework import Context, LeafSystem, State
 
@@ -59,25 +61,32 @@ class TaskPlanner(LeafSystem):
     """
 
     def __init__(
-        self, ward: Ward, *, max_actions: int = 60, max_expansions: int = 200_000, costs: LegCosts | None = None
+        self,
+        ward: Ward,
+        *,
+        tasks: Collection[str] = TASK_NAMES,
+        max_actions: int = 60,
+        max_expansions: int = 200_000,
+        costs: LegCosts | None = None,
     ) -> None:
         """Constructs the planner; reads the domains.
 
         Args:
             ward: the map.
+            tasks: the names of those it is to know.
             max_actions: of one task, after which it has failed.
             max_expansions: of one search.
             costs: predictions of legs; None for those of this ward and robot.
 
         Raises:
-            BadInput: if a limit is not positive, or a domain does not fit the ward.
+            BadInput: if a limit is not positive, there is no such task, or a domain does not fit the ward.
         """
         super().__init__()
         for name, limit in (("max_actions", max_actions), ("max_expansions", max_expansions)):
             if limit < 1:
                 raise BadInput(name, str(limit), "an integer >= 1")
-        tasks = {name: CareTask(name, ward, costs=costs) for name in TASK_NAMES}
-        self._executive = TaskExecutive(tasks, max_actions=max_actions, max_expansions=max_expansions)
+        known = {name: CareTask(name, ward, costs=costs) for name in tasks}
+        self._executive = TaskExecutive(known, max_actions=max_actions, max_expansions=max_expansions)
         self.solve_seconds = self._executive.solve_seconds
         self._task = self.DeclareAbstractInputPort("task", Value(Task()))
         self._symbolic_state = self.DeclareAbstractInputPort("symbolic_state", Value(SymbolicState()))

@@ -15,6 +15,7 @@ from pydrake.systems.framework import BasicVector, Context, DiscreteValues, Leaf
 from mala_drake.clock import METER_OFFSET, TICK
 from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
 from mala_drake.ward.congestion import sample
+from mala_drake.ward.dishes import presentation_error
 from mala_drake.ward.features import (
     FEATURE_SCALES,
     FEATURES,
@@ -23,7 +24,7 @@ from mala_drake.ward.features import (
     FeatureScales,
     approach_error,
 )
-from mala_drake.ward.in_place_actions import Verb, in_place_action
+from mala_drake.ward.in_place_actions import DELIVERING, InPlaceAction, in_place_action
 from mala_drake.ward.ward_map import Ward
 
 FASTEST = 3.0
@@ -142,8 +143,9 @@ class FeatureMeter(LeafSystem):
         time = elapsed / len(lengths)  # All pieces of one chord are equally long.
         sums.risk += self._rates.risk_rate(middles, speeds).sum() * time
         sums.discomfort += self._rates.discomfort_rate(middles, speeds).sum() * time
-        if _is_handing_over(self._action.Eval(context)):
-            sums.approach_error = approach_error((x, y, yaw), self._ideal)
+        handing_over = _handing_over(self._action.Eval(context))
+        if handing_over is not None:
+            sums.approach_error = approach_error((x, y, yaw), self._ideal) + presentation_error(handing_over.dish)
         sums.x, sums.y = x, y
 
     def _features(self, sums: Any, task: str) -> NDArray[np.float64]:
@@ -182,6 +184,7 @@ class FeatureMeter(LeafSystem):
         )
 
 
-def _is_handing_over(action: Action) -> bool:
-    work = in_place_action(action.name) if action.kind is ActionKind.IN_PLACE else None
-    return work is not None and work.verb is Verb.DELIVER
+def _handing_over(action: Action) -> InPlaceAction | None:
+    """The action if it hands something over, else None."""
+    work = in_place_action(action.name, action.arguments) if action.kind is ActionKind.IN_PLACE else None
+    return work if work is not None and work.verb in DELIVERING else None

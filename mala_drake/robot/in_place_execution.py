@@ -13,12 +13,13 @@ from dataclasses import dataclass, replace
 from mala_drake.clock import ROUNDING, TICK
 from mala_drake.messages import Action, ActionKind, ArmCommand, Message, Outcome
 from mala_drake.robot.arm_kinematics import STOWED, Joints, Point, joints_for_gripper
-from mala_drake.robot.gripper_geometry import PlanarPose, hanging_positions, landing_positions
-from mala_drake.robot.in_place_motions import MOTIONS, Aim, gripper_target, phase_index
+from mala_drake.robot.gripper_geometry import PlanarPose, gripper_to_hang_at, hanging_positions, landing_positions
+from mala_drake.robot.in_place_motions import MOTIONS, Aim, gripper_target, phase_index, works_about_goal
 from mala_drake.robot.item_messages import HandedItem
 from mala_drake.robot.put_spots import choose_spot, work_goal
-from mala_drake.ward.in_place_actions import SLOTS, InPlaceAction, Verb, in_place_action
-from mala_drake.ward.items import return_spots, table_spots
+from mala_drake.ward.dishes import DISHES
+from mala_drake.ward.in_place_actions import COLLECTING, DELIVERING, SLOTS, VERBS, InPlaceAction, Verb, in_place_action
+from mala_drake.ward.items import return_spots, table_spots, work_spot
 from mala_drake.ward.ward_map import Ward
 
 ITEM_TOLERANCE = 0.04
@@ -109,7 +110,7 @@ def accept(execution: Execution, action: Action, senses: Senses, ward: Ward) -> 
         return replace(execution, newest=action.sequence)
     begun = Execution(
         action=action,
-        work=in_place_action(action.name),
+        work=in_place_action(action.name, action.arguments),
         newest=action.sequence,
         started=senses.time,
         held=execution.held,
@@ -128,15 +129,38 @@ def _prepare(execution: Execution, senses: Senses, ward: Ward) -> Execution:
     execution = replace(execution, draw=work.charge / work.seconds)
     if work.verb is Verb.RECHARGE:
         return _prepare_recharge(execution, work, senses, ward)
-    if work.verb is Verb.COLLECT:
-        return execution  # Its goal follows from what the dispenser hands over.
+    if work.verb is Verb.CHOOSE or work.verb in COLLECTING:
+        return execution  # The goal of collecting follows from what the dispenser hands over.
     slots = [work.slot] if work.slot >= 0 else list(range(len(SLOTS)))
     handled = tuple((item, pad) for item, pad in execution.held if pad in slots)
     if len(handled) < len(slots):
-        missing = [SLOTS[slot] for slot in slots if slot not in {pad for _, pad in handled}]
+        names = _contents(work)
+        missing = [names[slot] for slot in slots if slot not in {pad for _, pad in handled}]
         return _end(execution, Outcome.NOT_THERE, f"the gripper holds no {' and no '.join(missing)}", senses)
     execution = replace(execution, handled=handled)
-    return execution if work.verb is Verb.CHECK else _prepare_putting(execution, work, senses, ward)
+    if works_about_goal(work.verb):
+        return _prepare_working(execution, work, senses, ward)
+    putting = work.verb is Verb.PUT_DOWN or work.verb in DELIVERING
+    return _prepare_putting(execution, work, senses, ward) if putting else execution
+
+
+def _contents(work: InPlaceAction) -> tuple[str, ...]:
+    """What an action expects at each pad, in words."""
+    if work.verb not in VERBS["meal"]:
+        return SLOTS
+    return DISHES[work.dish].ingredients if work.dish in DISHES else ("first ingredient", "second ingredient")
+
+
+def _prepare_working(execution: Execution, work: InPlaceAction, senses: Senses, ward: Ward) -> Execution:
+    place = execution.action.place
+    spot = work_spot(ward, place)
+    if spot is None:
+        return _end(execution, Outcome.OUT_OF_REACH, f"there is nothing to work on at {place!r}", senses)
+    goal = gripper_to_hang_at((spot.x, spot.y, spot.z), senses.base, slot=-1)
+    targets = [gripper_target(phase, goal) for phase in MOTIONS[work.verb]]
+    if any(target is not None and joints_for_gripper(target) is None for target in targets):
+        return _end(execution, Outcome.OUT_OF_REACH, f"the arm does not reach at {place!r}", senses)
+    return replace(execution, goal=goal)
 
 
 def _prepare_recharge(execution: Execution, work: InPlaceAction, senses: Senses, ward: Ward) -> Execution:
@@ -151,7 +175,7 @@ def _prepare_recharge(execution: Execution, work: InPlaceAction, senses: Senses,
 def _prepare_putting(execution: Execution, work: InPlaceAction, senses: Senses, ward: Ward) -> Execution:
     place = execution.action.place
     kind = execution.handled[0][0].rpartition("/")[2]
-    spots = table_spots(ward, place) if work.verb is Verb.DELIVER else return_spots(ward, place, kind)
+    spots = table_spots(ward, place) if work.verb in DELIVERING else return_spots(ward, place, kind)
     if not spots:
         return _end(execution, Outcome.OUT_OF_REACH, f"there is nothing to put it on at {place!r}", senses)
     carried = {item for item, _ in execution.held}
@@ -182,7 +206,7 @@ def advance(execution: Execution, senses: Senses) -> Execution:
     elapsed = senses.time - execution.started - execution.delay + ROUNDING
     if elapsed >= work.seconds:
         return _judge(execution, work, senses)
-    if work.verb is Verb.COLLECT and not execution.handled:
+    if work.verb in COLLECTING and not execution.handled:
         if senses.handed.sequence != execution.action.sequence and elapsed < _ANSWER_TIME:
             return execution
         execution = _take(execution, work, senses)
@@ -211,7 +235,7 @@ def _take(execution: Execution, work: InPlaceAction, senses: Senses) -> Executio
     if not handed.item:
         return _end(execution, Outcome.OUT_OF_STOCK, f"no {work.kind} at {execution.action.place!r}", senses)
     if work.slot in {pad for _, pad in execution.held}:
-        return _end(execution, Outcome.NOT_THERE, f"the gripper holds a {SLOTS[work.slot]} already", senses)
+        return _end(execution, Outcome.NOT_THERE, f"the gripper's pad for {work.kind} is taken", senses)
     return _aim_at_item(replace(execution, handled=((handed.item, work.slot),)), senses)
 
 
@@ -230,13 +254,13 @@ def _move(execution: Execution, work: InPlaceAction, senses: Senses, fraction: f
     if index == execution.phase:
         return execution
     phase = MOTIONS[work.verb][index]
-    if work.verb is Verb.COLLECT and phase.aim is Aim.GOAL and not phase.holding:
+    if work.verb in COLLECTING and phase.aim is Aim.GOAL and not phase.holding:
         execution = _aim_at_item(execution, senses)
         if not execution.running:
             return execution
     others = tuple(pair for pair in execution.held if pair not in execution.handled)
     held = tuple(sorted((*others, *(execution.handled if phase.holding else ())), key=lambda pair: pair[1]))
-    return replace(execution, phase=index, arm=ArmCommand(gripper_target(phase.aim, execution.goal)), held=held)
+    return replace(execution, phase=index, arm=ArmCommand(gripper_target(phase, execution.goal)), held=held)
 
 
 def _judge(execution: Execution, work: InPlaceAction, senses: Senses) -> Execution:
@@ -245,6 +269,8 @@ def _judge(execution: Execution, work: InPlaceAction, senses: Senses) -> Executi
         if senses.charge >= FULL:
             return _end(execution, Outcome.SUCCESS, "", senses)
         return _end(execution, Outcome.OUT_OF_REACH, f"charged to {senses.charge:.2f} only", senses)
+    if work.verb is Verb.CHOOSE:
+        return _end(execution, Outcome.SUCCESS, "", senses)
     ends_holding = MOTIONS[work.verb][-1].holding
     wanted = hanging_positions(senses.base, senses.joints) if ends_holding else execution.landings
     astray = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from pydrake.common.value import Value
 from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
@@ -11,7 +11,7 @@ from mala_drake.clock import EXECUTE_OFFSET, TICK
 from mala_drake.messages import Action, ActionReport, ArmCommand, MagnetCommand
 from mala_drake.robot.in_place_execution import Execution, Senses, accept, advance
 from mala_drake.robot.item_messages import HandedItem
-from mala_drake.ward.items import all_items
+from mala_drake.ward.items import Item, all_items
 from mala_drake.ward.ward_map import Ward
 
 
@@ -40,15 +40,15 @@ class InPlaceExecutor(LeafSystem):
     and what the magnet holds stays held.
 
     `robot_state` is the estimate (x, y, yaw, v_x, v_y, omega_z); `item_positions` are the centres of the boxes in the
-    order of `all_items`; `arm_state` are the arm's three joint angles and their rates. `charge_rates` is what the
+    order of the items; `arm_state` are the arm's three joint angles and their rates. `charge_rates` is what the
     action takes from the battery and what a charger puts into it, both in charge per second.
     """
 
-    def __init__(self, ward: Ward) -> None:
-        """Constructs the executor for one ward."""
+    def __init__(self, ward: Ward, *, items: Sequence[Item] | None = None) -> None:
+        """Constructs the executor for one ward; `items` are the boxes that there are, None for `all_items`."""
         super().__init__()
         self._ward = ward
-        self._names = tuple(item.name for item in all_items(ward))
+        self._names = tuple(item.name for item in (all_items(ward) if items is None else items))
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
         self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
         self._handed_item = self.DeclareAbstractInputPort("handed_item", Value(HandedItem()))

@@ -9,11 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from mala_drake.robot.arm_kinematics import Point
+from mala_drake.robot.arm_kinematics import STOWED_POSITION, Point
 from mala_drake.ward.in_place_actions import Verb
 
 HOVER_HEIGHT = 0.13
 """Metres above its goal at which the gripper comes and goes: what hangs at it passes over boxes of 0.10 m."""
+
+NOD: Point = (STOWED_POSITION[0] + 0.03, 0.0, STOWED_POSITION[2] + 0.05)
+"""Where in the base frame the gripper goes for a moment when the robot has made up its mind."""
 
 CAMERA: Point = (0.30, 0.0, 1.06)
 """Where in the base frame the gripper shows a box to the camera above the robot's face."""
@@ -26,26 +29,39 @@ class Aim(Enum):
     HOVER = "hover"  # Above the goal.
     GOAL = "goal"
     CAMERA = "camera"
+    NOD = "nod"
 
 
 @dataclass(frozen=True, slots=True)
 class Phase:
-    """One phase: until which fraction of the action, where the gripper is, whether the action's boxes are held."""
+    """One phase: until which fraction of the action, where the gripper is, whether the action's boxes are held.
+
+    `offset` is from the goal: metres ahead, to the left and upwards, in the base frame.
+    """
 
     until: float
     aim: Aim
     holding: bool
+    offset: Point = (0.0, 0.0, 0.0)
 
+
+def _work(*steps: tuple[float, Point]) -> tuple[Phase, ...]:
+    """Both boxes are held and moved about the goal, then stowed."""
+    return (*(Phase(until, Aim.GOAL, True, offset) for until, offset in steps), Phase(1.00, Aim.STOW, True))
+
+
+_COLLECT = (
+    Phase(0.38, Aim.HOVER, False),
+    Phase(0.48, Aim.GOAL, False),
+    Phase(0.52, Aim.GOAL, True),
+    Phase(0.64, Aim.HOVER, True),
+    Phase(1.00, Aim.STOW, True),
+)
+_SHOW = (Phase(0.55, Aim.CAMERA, True), Phase(1.00, Aim.STOW, True))
 
 MOTIONS: dict[Verb, tuple[Phase, ...]] = {
-    Verb.COLLECT: (
-        Phase(0.38, Aim.HOVER, False),
-        Phase(0.48, Aim.GOAL, False),
-        Phase(0.52, Aim.GOAL, True),
-        Phase(0.64, Aim.HOVER, True),
-        Phase(1.00, Aim.STOW, True),
-    ),
-    Verb.CHECK: (Phase(0.55, Aim.CAMERA, True), Phase(1.00, Aim.STOW, True)),
+    Verb.COLLECT: _COLLECT,
+    Verb.CHECK: _SHOW,
     Verb.PUT_DOWN: (
         Phase(0.54, Aim.HOVER, True),
         Phase(0.74, Aim.GOAL, True),
@@ -61,6 +77,38 @@ MOTIONS: dict[Verb, tuple[Phase, ...]] = {
         Phase(1.00, Aim.STOW, False),
     ),
     Verb.RECHARGE: (Phase(1.00, Aim.STOW, False),),
+    Verb.CHOOSE: (Phase(1.00, Aim.NOD, False),),
+    Verb.COLLECT_INGREDIENT: _COLLECT,
+    Verb.CHECK_INGREDIENTS: _SHOW,
+    # A wipe over the counter, to and fro.
+    Verb.SANITIZE: _work((0.42, (0.0, 0.15, 0.08)), (0.60, (0.0, -0.15, 0.08))),
+    # Dipped into the basin twice.
+    Verb.WASH: _work((0.38, (0.0, 0.0, 0.05)), (0.48, (0.0, 0.0, 0.14)), (0.58, (0.0, 0.0, 0.05))),
+    # Three strokes over the board.
+    Verb.CHOP: _work(
+        (0.26, (0.0, 0.0, 0.14)),
+        (0.34, (0.0, 0.0, 0.06)),
+        (0.42, (0.0, 0.0, 0.14)),
+        (0.50, (0.0, 0.0, 0.06)),
+        (0.58, (0.0, 0.0, 0.14)),
+        (0.66, (0.0, 0.0, 0.06)),
+        (0.72, (0.0, 0.0, 0.14)),
+    ),
+    # Held before the plates, and stirred.
+    Verb.COOK: _work(
+        (0.50, (0.08, 0.0, 0.18)), (0.60, (0.08, 0.06, 0.18)), (0.70, (0.08, -0.06, 0.18)), (0.80, (0.08, 0.0, 0.18))
+    ),
+    Verb.CHECK_COOKING_LEVEL: _SHOW,
+    Verb.CHECK_PALATABILITY: _SHOW,
+    # Brought together on the plate, a little from each side.
+    Verb.ASSEMBLE: _work((0.38, (0.0, 0.04, 0.04)), (0.48, (0.0, -0.04, 0.04)), (0.62, (0.0, 0.0, 0.12))),
+    Verb.SERVE: (
+        Phase(0.28, Aim.HOVER, True),
+        Phase(0.42, Aim.GOAL, True),
+        Phase(0.54, Aim.GOAL, False),
+        Phase(0.64, Aim.HOVER, False),
+        Phase(1.00, Aim.STOW, False),
+    ),
 }
 """The phases of each verb; the last one ends with the action."""
 
@@ -74,16 +122,23 @@ def phase_index(verb: Verb, fraction: float) -> int:
     return len(phases) - 1
 
 
-def gripper_target(aim: Aim, goal: Point | None) -> Point | None:
+def gripper_target(phase: Phase, goal: Point | None) -> Point | None:
     """Where the gripper is to be in the base frame, None for stowed; `goal` is where it does its work.
 
     Raises:
-        ValueError: the aim needs a goal and there is none.
+        ValueError: the phase needs a goal and there is none.
     """
-    if aim is Aim.STOW:
+    if phase.aim is Aim.STOW:
         return None
-    if aim is Aim.CAMERA:
-        return CAMERA
+    if phase.aim in (Aim.CAMERA, Aim.NOD):
+        return CAMERA if phase.aim is Aim.CAMERA else NOD
     if goal is None:
-        raise ValueError(f"{aim} without a goal")
-    return goal if aim is Aim.GOAL else (goal[0], goal[1], goal[2] + HOVER_HEIGHT)
+        raise ValueError(f"{phase.aim} without a goal")
+    x, y, z = (a + b for a, b in zip(goal, phase.offset, strict=True))
+    return (x, y, z) if phase.aim is Aim.GOAL else (x, y, z + HOVER_HEIGHT)
+
+
+def works_about_goal(verb: Verb) -> bool:
+    """Whether the boxes in the gripper are moved about a goal and kept."""
+    phases = MOTIONS[verb]
+    return all(phase.holding for phase in phases) and any(phase.aim is Aim.GOAL for phase in phases)

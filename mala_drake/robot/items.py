@@ -1,4 +1,4 @@
-"""The medicine boxes as free bodies in the plant."""
+"""The boxes of medicines, supplements and ingredients as free bodies in the plant."""
 
 from __future__ import annotations
 
@@ -29,9 +29,14 @@ KIND_COLORS = {
     "supp_vitamin_d": "0.95 0.80 0.20 1",
     "supp_electrolyte": "0.20 0.60 0.86 1",
     "supp_omega3": "0.15 0.62 0.35 1",
+    "bread": "0.80 0.56 0.28 1",
+    "nuts": "0.48 0.28 0.14 1",
+    "vegetables": "0.30 0.66 0.22 1",
+    "chicken": "0.95 0.66 0.58 1",
 }
 """Red, green, blue and opacity of each kind, as SDF writes them."""
 
+_MODELS = {"med": "item_medicine.sdf", "supp": "item_supplement.sdf"}  # By what a kind begins with.
 _UNKNOWN_COLOR = "0.60 0.60 0.60 1"
 
 
@@ -50,8 +55,8 @@ class ItemBodies:
 def AddItems(plant: MultibodyPlant, scene_graph: SceneGraph, items: Sequence[Item], robot: CareRobot) -> ItemBodies:
     """Adds a free body for each item, by default on its shelf; each is a model instance of the item's name.
 
-    Medicines (`med_...`) are cartons, everything else is a jar. The arm and the boxes pass through each other: what
-    holds a box is the magnet's force, not the shape of the gripper.
+    Medicines (`med_...`) are cartons, supplements (`supp_...`) jars, everything else is a tray of food. The arm and the
+    boxes pass through each other: what holds a box is the magnet's force, not the shape of the gripper.
 
     Args:
         plant: not finalized, the robot already in it.
@@ -74,7 +79,7 @@ def X_WI_at(pose: ItemPose) -> RigidTransform:
 
 
 def _add_item(plant: MultibodyPlant, item: Item) -> RigidBody:
-    model = "item_medicine.sdf" if item.kind.startswith("med_") else "item_supplement.sdf"
+    model = _MODELS.get(item.kind.partition("_")[0], "item_ingredient.sdf")
     text = _named_and_coloured(models_folder() / model, item)
     (instance,) = MakeCareParser(plant).AddModelsFromString(text, "sdf")
     body = plant.GetBodyByName("box", instance)

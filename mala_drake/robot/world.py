@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from pydrake.common.value import Value
 from pydrake.systems.framework import Context, LeafSystem, State
@@ -12,6 +14,7 @@ from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionReport, MagnetCommand, Outcome, Task, WorldFacts
 from mala_drake.randomness import keyed_generator
 from mala_drake.robot.arm_kinematics import Point
+from mala_drake.robot.established_atoms import established_atoms
 from mala_drake.robot.gripper_geometry import PlanarPose, hanging_positions
 from mala_drake.robot.item_messages import ClampedItems, HandedItem
 from mala_drake.robot.plant_state import PLANT_STATE_SIZE, X, Y, yaw_of
@@ -21,12 +24,11 @@ from mala_drake.robot.world_state import (
     begin_task,
     choose_item,
     conclude,
-    established_atoms,
     follow_magnet,
     read_action,
     take_back,
 )
-from mala_drake.ward.in_place_actions import SLOTS, Verb
+from mala_drake.ward.in_place_actions import COLLECTING, SLOTS
 from mala_drake.ward.items import ITEM_HALF_HEIGHT, KINDS, Item, all_items
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import Ward
@@ -34,6 +36,7 @@ from mala_drake.ward.ward_map import Ward
 REQUESTED: Mapping[str, str] = {"medication": "med_antibiotic", "supplement": "supp_vitamin_d"}
 """What the patient of the hospital case is to get."""
 
+_BEDSIDE_REACH = 0.6  # Metres from a bedside's standing point within which the arm reaches its table.
 _RESTING_SLACK = 0.03  # Metres that the centre of a box on a table may be off its height: it may have tipped over.
 
 
@@ -57,11 +60,12 @@ class World(LeafSystem):
         - clamped
 
     A collect action makes the dispenser of the place hand over a box: the one asked for, or with a small probability
-    another one. It stays clamped until the gripper's magnet wants it. Whether a box hangs in the gripper or rests on a
-    bedside table is judged by where it really is, from the plant: `item_positions` are the centres of the boxes, x, y
-    and z each, in the order of `all_items`; `plant_state` and `arm_state` are the state ports of the robot's base and
-    arm. Effects are established at the first tick that sees the report of their action; place names in the atoms are
-    spelled as on the map.
+    another one. Ingredients stand on open shelves and are what they look like. A box stays clamped until the gripper's
+    magnet wants it. Whether a box hangs in the gripper or rests on a bedside table is judged by where it really is,
+    from the plant: `item_positions` are the centres of the boxes, x, y and z each, in their order; `plant_state` and
+    `arm_state` are the state ports of the robot's base and arm. Effects are established at the first tick that sees the
+    report of their action; place names in the atoms are spelled as on the map. What is known of meals is established
+    where there are ingredients.
 
     The choices of an episode depend on the seed, the number of the episode in `task` and the number of the hand-over.
     """
@@ -70,6 +74,7 @@ class World(LeafSystem):
         self,
         ward: Ward,
         *,
+        items: Sequence[Item] | None = None,
         requested: Mapping[str, str] | None = None,
         wrong_item_probability: float = 0.0,
         wrong_items: Sequence[str] = (),
@@ -80,6 +85,7 @@ class World(LeafSystem):
 
         Args:
             ward: the map.
+            items: the boxes that there are; None for `all_items`.
             requested: the kind that is right, for "medication" and "supplement"; None for `REQUESTED`.
             wrong_item_probability: of each hand-over, in [0, 1].
             wrong_items: kinds that are handed over first in each task, whatever is asked for: each at the first
@@ -99,8 +105,8 @@ class World(LeafSystem):
         keyed_generator(seed, 0, "world")  # Refuses a bad seed now rather than in the simulation.
         self._seed = seed
         self._robot = robot
-        self._items = all_items(ward)
-        kinds = {item.kind: None for item in self._items}
+        self._items = all_items(ward) if items is None else tuple(items)
+        kinds = {kind: None for kept in KINDS.values() for kind in kept}
         for i, kind in enumerate(self._mistakes):
             if kind not in kinds:
                 raise BadInput(f"wrong_items[{i}]", repr(kind), "one of " + ", ".join(kinds))
@@ -108,6 +114,7 @@ class World(LeafSystem):
         self._tables = {
             name: piece for name, piece in ward.furniture_of.items() if ward.place[name].category == "bedside"
         }
+        self._bedsides = [(place.x, place.y) for place in ward.places if place.category == "bedside"]
         # One message for each stock that there ever was: the magnet works on it at the plant's rate, by identity.
         self._clamped: dict[tuple[str, ...], ClampedItems] = {}
         self._declare_ports()
@@ -137,7 +144,7 @@ class World(LeafSystem):
 
     def _calc_world_facts(self, context: Context, output: Value) -> None:
         state = self._current(context)
-        output.set_value(WorldFacts(established_atoms(state, self._items, robot=self._robot), state.concluded))
+        output.set_value(WorldFacts(established_atoms(state, self._item_by_name, robot=self._robot), state.concluded))
 
     def _calc_handed_item(self, context: Context, output: Value) -> None:
         output.set_value(self._current(context).handed)
@@ -156,7 +163,9 @@ class World(LeafSystem):
         world = before
         if task.sequence > world.task.sequence:
             world = begin_task(world, task, self._mistakes)
-        world = follow_magnet(world, magnet, positions, self._hanging(context))
+        base = self._base_pose(context)
+        world = follow_magnet(world, magnet, positions, self._hanging(context, base))
+        world = self._follow_base(world, base)
         outcome = _outcome(world, action, report)
         if outcome is not Outcome.RUNNING:
             on_table = [self._is_on_table(positions, item, world.action.place) for item in world.taken_along]
@@ -171,15 +180,23 @@ class World(LeafSystem):
         values = self._positions.Eval(context).tolist()
         return {item.name: (values[3 * i], values[3 * i + 1], values[3 * i + 2]) for i, item in enumerate(self._items)}
 
-    def _hanging(self, context: Context) -> tuple[Point, ...]:
+    def _base_pose(self, context: Context) -> PlanarPose:
         plant_state = self._plant_state.Eval(context).tolist()
-        base: PlanarPose = (plant_state[X], plant_state[Y], yaw_of(plant_state))
+        return plant_state[X], plant_state[Y], yaw_of(plant_state)
+
+    def _hanging(self, context: Context, base: PlanarPose) -> tuple[Point, ...]:
         yaw, shoulder, elbow = self._arm_state.Eval(context).tolist()[:3]
         return hanging_positions(base, (yaw, shoulder, elbow))
 
+    def _follow_base(self, world: WorldState, base: PlanarPose) -> WorldState:
+        at_bedside = any(math.dist(base[:2], place) <= _BEDSIDE_REACH for place in self._bedsides)
+        if at_bedside == world.kitchen.at_bedside:
+            return world
+        return replace(world, kitchen=replace(world.kitchen, at_bedside=at_bedside))
+
     def _hand_over(self, world: WorldState, action: Action) -> Item | None:
         asked = read_action(action)
-        if asked is None or asked.verb is not Verb.COLLECT:
+        if asked is None or asked.verb not in COLLECTING:
             return None
         generator = keyed_generator(self._seed, world.task.episode, f"world/{world.hand_overs}")
         return choose_item(

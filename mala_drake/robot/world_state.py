@@ -12,10 +12,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mala_drake.messages import Action, ActionKind, Atom, MagnetCommand, Message, Outcome, Task
+from mala_drake.messages import Action, ActionKind, MagnetCommand, Message, Outcome, Task
 from mala_drake.robot.arm_kinematics import Point
 from mala_drake.robot.item_messages import HandedItem
-from mala_drake.ward.in_place_actions import InPlaceAction, Verb, in_place_action
+from mala_drake.robot.kitchen_state import Boxes, KitchenState, conclude_in_kitchen
+from mala_drake.ward.in_place_actions import (
+    COLLECTING,
+    DELIVERING,
+    InPlaceAction,
+    Verb,
+    in_place_action,
+    ingredient_slot,
+)
 from mala_drake.ward.items import Item
 
 HOLDING_DISTANCE = 0.05
@@ -49,15 +57,22 @@ class WorldState(Message):
     hand_overs: int = 0  # In this task.
     mistakes: tuple[str, ...] = ()  # Kinds still to be handed over whatever is asked for.
     action: Action = Action()  # The newest one.
-    taken_along: tuple[str, str] = ("", "")  # The boxes carried when it began.
+    taken_along: Boxes = ("", "")  # The boxes carried when it began.
     concluded: int = 0  # Sequence of the last in-place action whose effects are established.
     delivered: bool = False
+    kitchen: KitchenState = KitchenState()
     task: Task = Task()
+
+    @property
+    def boxes(self) -> Boxes:
+        """What really hangs at each pad."""
+        return self.carried[0].item, self.carried[1].item
 
 
 def begin_task(state: WorldState, task: Task, mistakes: tuple[str, ...]) -> WorldState:
     """A new task finds stock and gripper as they are, but nothing delivered and all `mistakes` still to be made."""
-    return replace(state, task=task, delivered=False, hand_overs=0, mistakes=mistakes)
+    kitchen = KitchenState(at_bedside=state.kitchen.at_bedside)
+    return replace(state, task=task, delivered=False, hand_overs=0, mistakes=mistakes, kitchen=kitchen)
 
 
 def choose_item(
@@ -72,11 +87,15 @@ def choose_item(
     """The box that the dispenser at `place` really hands over when asked for `kind`; None when it is out of stock.
 
     It is the first of the mistakes still to be made that this dispenser can make; else, with `wrong_probability`, a
-    box of another kind if there is one; else the right one.
+    box of another kind if there is one; else the right one. Ingredients stand on an open shelf: nobody hands them over,
+    so they are what they look like.
     """
-    here = {item.kind: item for item in items if item.place == place and item.name in state.stock}
-    if kind not in here:
-        return None
+    here: dict[str, Item] = {}
+    for item in items:
+        if item.place == place and item.name in state.stock:
+            here.setdefault(item.kind, item)
+    if kind not in here or ingredient_slot(kind) is not None:
+        return here.get(kind)
     others = [item for item in here.values() if item.kind != kind]
     mistaken = generator.random() < wrong_probability
     for mistake in state.mistakes:
@@ -89,10 +108,9 @@ def choose_item(
 
 def begin_action(state: WorldState, action: Action, handed: Item | None) -> WorldState:
     """A new action; `handed` is the box handed over when it is a collect action that found one."""
-    taken_along = (state.carried[0].item, state.carried[1].item)
-    state = replace(state, action=action, taken_along=taken_along)
+    state = replace(state, action=action, taken_along=state.boxes)
     asked = read_action(action)
-    if asked is None or asked.verb is not Verb.COLLECT:
+    if asked is None or asked.verb not in COLLECTING:
         return state
     if handed is None:
         return replace(state, handed=HandedItem(action.sequence), hand_overs=state.hand_overs + 1)
@@ -148,12 +166,15 @@ def conclude(
     state = replace(state, concluded=state.action.sequence)
     if done is None:
         return state
-    if done.verb is Verb.DELIVER:
-        return replace(state, delivered=state.delivered or all(on_table))
+    served = state.taken_along if done.verb in DELIVERING and on_table and all(on_table) else ()
+    kitchen = conclude_in_kitchen(state.kitchen, done, outcome, state.boxes, served=served)
+    state = replace(state, kitchen=kitchen)
+    if done.verb in DELIVERING:
+        return replace(state, delivered=state.delivered or bool(served))
     carried = state.carried[done.slot] if done.slot >= 0 else Carried()
     if not carried.item:
         return state
-    if done.verb is Verb.COLLECT:
+    if done.verb in COLLECTING:
         carried = replace(carried, label=carried.label or done.kind)
     elif done.verb is Verb.CHECK and outcome is Outcome.SUCCESS:
         kind = items[carried.item].kind
@@ -177,22 +198,9 @@ def take_back(
     return state if stock == state.stock else replace(state, stock=stock)
 
 
-def established_atoms(state: WorldState, items: Sequence[Item], *, robot: str) -> tuple[Atom, ...]:
-    """What the robot's sensors have established, sorted."""
-    atoms: list[Atom] = [("available", item.kind, item.place) for item in items if item.name in state.stock]
-    for slot, carried in zip(("medication", "supplement"), state.carried, strict=True):
-        if carried.item and carried.label:
-            atoms += [(f"has-{slot}", robot), (f"{slot}-is", robot, carried.label)]
-            if carried.verdict:
-                atoms.append((f"{carried.verdict}-{slot}", robot))
-    if state.delivered:
-        atoms.append(("delivered", robot))
-    return tuple(sorted(atoms))
-
-
 def read_action(action: Action) -> InPlaceAction | None:
     """The in-place action that `action` is, None for a leg or an unknown name."""
-    return in_place_action(action.name) if action.kind is ActionKind.IN_PLACE else None
+    return in_place_action(action.name, action.arguments) if action.kind is ActionKind.IN_PLACE else None
 
 
 def _with_entry(pair: tuple, slot: int, entry: object) -> tuple:

@@ -48,7 +48,13 @@ class FeatureScales:
         return np.array([self.time, self.safety, self.battery, self.proximity, self.approach])
 
 
-FEATURE_SCALES: Mapping[str, FeatureScales] = MappingProxyType({"medication": FeatureScales()})
+FEATURE_SCALES: Mapping[str, FeatureScales] = MappingProxyType(
+    {
+        "medication": FeatureScales(),
+        # A hot meal takes twice as long as a sandwich and more than one charge; a dish's looks add to the approach.
+        "meal": FeatureScales(time=320.0, safety=0.49, battery=1.95, proximity=7.0, approach=1.9),
+    }
+)
 """By task: such that the features of the plans worth choosing lie between 0.3 and 0.95."""
 
 

@@ -260,3 +260,30 @@ print(plan.actions, plan.cost, plan.expanded, care.features(state, plan.actions[
 def test_an_unknown_task_is_refused(ward: Ward) -> None:
     with pytest.raises(BadInput, match="task: 'gardening'; expected one of medication"):
         mut.CareTask("gardening", ward)
+
+
+def test_a_place_that_the_task_does_not_know_is_in_transit(ward: Ward) -> None:
+    meal = mut.CareTask("meal", ward)
+    stock = tuple(("ingredient_available", item.kind, item.place) for item in all_items(ward, ("meal",)))
+    seen = SymbolicState((*stock, ("at", "robot1", "pharmacy_north")), "pharmacy_north", 1.0)
+    state = meal.observed_state(seen, pose_of(ward, "pharmacy_north"), standing_at="pharmacy_north")
+    assert state.holds(("at", "robot1", "in_transit"))
+    assert Planner(meal.planning_task).solve(state).found
+
+
+def test_a_meal_begins_as_its_problem_says(ward: Ward) -> None:
+    meal = mut.CareTask("meal", ward)
+    stock = {("ingredient_available", item.kind, item.place) for item in all_items(ward, ("meal",))}
+    atoms = (*stock, ("cross-contamination-risk",), ("at", "robot1", "home"))
+    state = meal.observed_state(SymbolicState(tuple(sorted(atoms)), "home", 1.0), (0.0, 0.0, 0.0), standing_at="home")
+    assert state == meal.planning_task.initial_state
+
+
+def test_what_became_of_the_food_and_the_workspace_is_compared_with_what_was_expected(ward: Ward) -> None:
+    meal = mut.CareTask("meal", ward)
+    expected = meal.planning_task.apply(meal.planning_task.initial_state, "(choose_salad robot1)")
+    missing = tuple(("missing_ingredient", "robot1", kind) for kind in ("nuts", "vegetables"))
+    known = (("meal_to_prepare", "robot1", "salad"), *missing, ("at", "robot1", "home"))
+    seen = SymbolicState(tuple(sorted((*known, ("cross-contamination-risk",)))), "home", 1.0)
+    assert meal.mismatch(expected, seen) == ()
+    assert meal.mismatch(expected, replace(seen, atoms=known)) == (("cross-contamination-risk",),)

@@ -40,9 +40,11 @@ def numbers(text: str) -> dict[str, float]:
     return {fluent: float(value) for fluent, value in re.findall(r"\(= (\([^()]*\)) ([^()\s]+)\)", text)}
 
 
-def test_the_problem_has_the_numbers_of_the_ward(generated: str) -> None:
+@pytest.mark.parametrize(("name", "file"), [("medication", "problem_med.pddl"), ("meal", "problem_meal.pddl")])
+def test_the_problem_has_the_numbers_of_the_ward(ward: Ward, costs: LegCosts, name: str, file: str) -> None:
     """Fails when map, drive paths or features have changed: run scripts/make_domain_data.py."""
-    committed = PROBLEM.read_text()
+    committed = (domains_folder() / file).read_text()
+    generated = mut.fill_problem(committed, ward, name, costs=costs)
     # Everything but the numbers is the same text; the last digit may differ from one mathematics library to another.
     assert re.sub(r"[\d.]+\)", ")", committed) == re.sub(r"[\d.]+\)", ")", generated)
     made = numbers(generated)
@@ -104,3 +106,24 @@ def test_numbers_have_few_digits_and_no_superfluous_zeros(generated: str) -> Non
 def test_places_are_known_to_the_domain_in_lower_case(ward: Ward, task: PlanningTask) -> None:
     locations = {place.name.lower() for place in ward.places if place.category != "kitchen"} | {mut.IN_TRANSIT}
     assert set(task.description.objects_of(("location",))) == locations
+
+
+def test_a_meal_is_told_what_sets_its_dishes_apart(ward: Ward) -> None:
+    fluents = mut.table_fluents("meal")
+    assert fluents[("choose-time",)] == Decimal("0.8")  # 0.5 s are three ticks, and the planner knows a tick later.
+    assert fluents[("cook-battery",)] == Decimal("0.5")
+    assert fluents[("assemble-time", "salad")] > fluents[("assemble-time", "sandwich")] == Decimal("5.2")
+    errors = [fluents[("presentation-error", dish)] for dish in ("hot_meal", "salad", "sandwich")]
+    assert errors == sorted(errors)
+    assert ("deliver-time",) not in fluents
+    assert ("serve-time",) not in mut.table_fluents("medication")
+
+
+def test_the_kitchen_is_stocked_in_meals_only() -> None:
+    stock = [
+        re.findall(rf"\({name} (\w+) ", path.read_text())
+        for name, path in (("available", PROBLEM), ("ingredient_available", domains_folder() / "problem_meal.pddl"))
+    ]
+    assert set(stock[1]) == {"bread", "nuts", "vegetables", "chicken"}
+    assert len(stock[1]) == 4  # The vegetables in reserve are the same fact.
+    assert len(stock[0]) == 12

@@ -34,11 +34,12 @@ class Ward:
 
     def __init__(self, **options):
         self.ward = LoadWard()
+        self.kept = all_items(self.ward, (options.pop("task", "medication"),))
         builder = DiagramBuilder()
         self.plant, scene_graph = MakeCarePlant(builder)
         self.robot = AddCareRobot(self.plant, scene_graph)
         AddWard(self.plant, self.ward, visible=False)
-        self.items = AddItems(self.plant, scene_graph, all_items(self.ward), self.robot)
+        self.items = AddItems(self.plant, scene_graph, self.kept, self.robot)
         self.plant.Finalize()
         self._wire(builder, options)
         self.diagram = builder.Build()
@@ -51,7 +52,8 @@ class Ward:
         self.sequence, self.place = 0, ""
 
     def _wire(self, builder, options):
-        self.world, self.executor = World(self.ward, **options), InPlaceExecutor(self.ward)
+        self.world = World(self.ward, items=self.kept, **options)
+        self.executor = InPlaceExecutor(self.ward, items=self.kept)
         self.battery = Battery(initial_charge=0.9)
         systems = [
             *(self.world, self.executor, self.battery, Drivetrain(), StateEstimator(), Arm()),
@@ -159,7 +161,7 @@ def test_a_medicine_and_a_supplement_are_collected_checked_and_delivered(arrival
         x, y, z = stage.position(item)
         assert math.dist((x, y), (table.x, table.y)) < 0.3
         assert z == pytest.approx(table.height + 0.05, abs=0.01)
-    for item in all_items(stage.ward):
+    for item in stage.kept:
         pose = item.shelf_pose
         if item.name in delivered:
             continue
@@ -213,7 +215,7 @@ QUICK = {(NORTH, (0.0, 0.0, 0.0)), (SUPPLY, PUT_BACK[3][2])}
 )
 def test_the_other_box_stays_in_the_gripper_while_wrong_ones_are_put_back(place, kind, arrival):
     """Wherever a leg ends, both wrong kinds come first, and no collect after a put-down upsets the shelf."""
-    items = {item.name: item for item in all_items(LoadWard())}
+    items = {item.name: item for item in all_items(LoadWard(), ("medication",))}
     wrong = [item.kind for item in items.values() if item.place == place and item.kind != kind]
     stage, is_medicine = Ward(wrong_items=wrong), kind.startswith("med_")
     other_place, other_kind = ("supply_A", "supp_vitamin_d") if is_medicine else (NORTH, "med_antibiotic")

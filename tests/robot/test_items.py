@@ -10,7 +10,7 @@ from pydrake.systems.framework import DiagramBuilder
 
 from mala_drake.robot import items as mut
 from mala_drake.robot.plant import AddCareRobot, AddFloor, MakeCarePlant
-from mala_drake.ward.items import ITEM_HALF_HEIGHT, ITEM_SIZE, KINDS, Item, ItemPose
+from mala_drake.ward.items import ITEM_HALF_HEIGHT, ITEM_SIZE, KINDS, KITCHEN_KINDS, Item, ItemPose
 
 ITEMS = (
     Item("pharmacy_north/med_antibiotic", "med_antibiotic", "pharmacy_north", ItemPose(1.0, 2.0, 0.83, 1.5)),
@@ -56,7 +56,7 @@ def test_weight_and_inertia_are_those_the_magnet_counts_on(scene):
 
 def test_kinds_are_told_apart_by_colour(scene):
     diagram, plant, _, bodies = scene
-    kinds = {kind for group in KINDS.values() for kind in group}
+    kinds = {kind for group in (*KINDS.values(), *KITCHEN_KINDS.values()) for kind in group}
     assert kinds == set(mut.KIND_COLORS)
     assert len(set(mut.KIND_COLORS.values())) == len(kinds)
     root = diagram.CreateDefaultContext()

@@ -7,6 +7,7 @@ import pytest
 
 import mala_drake.robot.world_state as mut
 from mala_drake.messages import Action, ActionKind, MagnetCommand, Outcome, Task
+from mala_drake.robot.established_atoms import established_atoms
 from mala_drake.robot.item_messages import HandedItem
 from mala_drake.ward.items import all_items
 from mala_drake.ward.ward_map import LoadWard
@@ -18,7 +19,7 @@ PADS = ((50.0, 0.0, 1.0), (50.0, 0.14, 1.0))
 
 @pytest.fixture(scope="module")
 def items():
-    return all_items(LoadWard())
+    return all_items(LoadWard(), ("medication",))
 
 
 @pytest.fixture
@@ -47,7 +48,8 @@ def choose(state, items, *, kind="med_antibiotic", place="pharmacy_north", seed=
 
 
 def atoms(state, items):
-    return [atom for atom in mut.established_atoms(state, items, robot="robot1") if atom[0] != "available"]
+    by_name = {item.name: item for item in items}
+    return [atom for atom in established_atoms(state, by_name, robot="robot1") if atom[0] != "available"]
 
 
 def collected(state, by_name, item, *, asked="med_antibiotic"):
@@ -184,20 +186,6 @@ def test_delivered_is_only_what_rests_on_the_table_all_of_it(full, items, by_nam
         state = mut.begin_action(full, deliver, None)
         state = mut.conclude(state, Outcome.SUCCESS, by_name, REQUESTED, on_table=on_table)
         assert atoms(state, items) == expected
-
-
-def test_the_stock_seen_is_the_stock_there_is(full, items):
-    def available(state):
-        return {atom[1:] for atom in mut.established_atoms(state, items, robot="robot1") if atom[0] == "available"}
-
-    assert available(full) == {(item.kind, item.place) for item in items}
-    emptied = replace(full, stock=tuple(name for name in full.stock if name != RIGHT))
-    assert available(full) - available(emptied) == {("med_antibiotic", "pharmacy_north")}
-
-
-def test_atoms_are_sorted(full, items, by_name):
-    found = mut.established_atoms(collected(full, by_name, RIGHT), items, robot="robot1")
-    assert list(found) == sorted(found)
 
 
 def test_a_box_that_the_gripper_missed_is_kept_again(full, items, shelved):

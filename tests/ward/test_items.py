@@ -6,6 +6,7 @@ import pytest
 import shapely
 
 import mala_drake.ward.items as mut
+from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.shapes import ShapeDistances, outline
 from mala_drake.ward.ward_map import LoadWard
 
@@ -28,8 +29,8 @@ def distance_to_standing_point(ward, pose, place):
     return math.dist((standing.x, standing.y), (pose.x, pose.y))
 
 
-def test_every_kind_is_kept_at_two_places(ward):
-    items = mut.all_items(ward)
+def test_every_medicine_and_supplement_is_kept_at_two_places(ward):
+    items = mut.all_items(ward, ("medication",))
     assert len(items) == 12
     assert len({item.name for item in items}) == 12
     for category, kinds in mut.KINDS.items():
@@ -39,9 +40,25 @@ def test_every_kind_is_kept_at_two_places(ward):
             assert sorted(item.place for item in items if item.kind == kind) == sorted(places)
 
 
-def test_items_are_named_by_place_and_kind_in_the_order_of_the_map(ward):
-    items = mut.all_items(ward)
-    assert all(item.name == f"{item.place}/{item.kind}" for item in items)
+def test_the_kitchen_keeps_the_ingredients_where_the_case_says(ward):
+    items = mut.all_items(ward, ("meal",))
+    assert {(item.kind, item.place) for item in items} == {
+        *(("bread", "pantry"), ("nuts", "pantry"), ("vegetables", "pantry"), ("chicken", "fridge")),
+    }
+    assert {item.kind for item in items} == {kind for dish in DISHES.values() for kind in dish.ingredients}
+    assert [item.name for item in items if item.kind == "vegetables"] == ["pantry/vegetables", "pantry/vegetables_2"]
+
+
+def test_all_items_are_those_of_all_tasks(ward):
+    assert mut.all_items(ward) == mut.all_items(ward, ("medication",)) + mut.all_items(ward, ("meal",))
+    assert mut.all_items(ward, ()) == ()
+
+
+@pytest.mark.parametrize("task", mut.TASKS)
+def test_items_are_named_by_place_and_kind_in_the_order_of_the_map(ward, task):
+    items = mut.all_items(ward, (task,))
+    assert all(item.name.startswith(f"{item.place}/{item.kind}") for item in items)
+    assert len({item.name for item in items}) == len(items)
     order = [place.name for place in ward.places]
     indices = [order.index(item.place) for item in items]
     assert indices == sorted(indices)
@@ -76,12 +93,12 @@ def test_the_box_at_the_other_pad_passes_between_the_boxes_on_the_shelf(ward):
 
 
 def test_a_box_is_put_back_where_its_kind_stands_if_that_is_free(ward):
-    for item in mut.all_items(ward):
+    for item in mut.all_items(ward, ("medication",)):
         assert mut.return_spots(ward, item.place, item.kind)[0] == item.shelf_pose
 
 
 def test_the_other_return_spots_are_free_and_on_the_ledge(ward):
-    items = mut.all_items(ward)
+    items = mut.all_items(ward, ("medication",))
     for place in {item.place for item in items}:
         spots = mut.return_spots(ward, place, "")
         assert spots
@@ -113,7 +130,19 @@ def test_spots_are_near_enough_for_the_arm(ward):
     assert all(0.4 < distance_to_standing_point(ward, spot, place) < 0.9 for place, spot in spots)
 
 
-@pytest.mark.parametrize("place", ["home", "charge_main", "nowhere", ""])
+@pytest.mark.parametrize("place", ["pantry", "fridge", "prep_station", "stove", "quality_check"])
+def test_the_pair_in_the_gripper_is_worked_on_over_the_ledge(ward, place):
+    spot = mut.work_spot(ward, place)
+    assert outline(ward.furniture_of[place].shape).contains(footprint(spot))
+    assert distance_to_standing_point(ward, spot, place) == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize("place", ["pharmacy_north", "home", "nowhere", ""])
+def test_nothing_is_prepared_outside_the_kitchen(ward, place):
+    assert mut.work_spot(ward, place) is None
+
+
+@pytest.mark.parametrize("place", ["home", "charge_main", "nowhere", "", "pantry"])
 def test_nothing_can_be_put_where_there_is_no_ledge_or_table(ward, place):
     assert mut.return_spots(ward, place, "med_insulin") == ()
     assert mut.table_spots(ward, place) == ()
