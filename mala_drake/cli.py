@@ -66,7 +66,7 @@ def start(
 @app.command()
 def run(
     scenario: ScenarioFile = None,
-    task: Annotated[str | None, typer.Option(help="What every episode is: medication.")] = None,
+    task: Annotated[str | None, typer.Option(help="What every episode is: medication, meal or alternate.")] = None,
     profile: Annotated[str | None, typer.Option(help="Patient profile, for example safety_first.")] = None,
     episodes: Annotated[int | None, typer.Option(help="Number of episodes.")] = None,
     seed: Annotated[int | None, typer.Option(help="Random seed.")] = None,
