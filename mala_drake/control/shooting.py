@@ -69,9 +69,9 @@ def build_expressions(layout: ParameterLayout, period: float) -> ShootingExpress
     obstacle_penalty, limit_penalty = pieces["constraints.obstacle_penalty"], pieces["constraints.limit_penalty"]
     cost = (
         _tracking_cost(columns, controls, pieces)
-        + obstacle_penalty * _penalty(to_obstacles, OBSTACLE_BUFFER)
-        + limit_penalty * _penalty(to_limits, LIMIT_BUFFER)
-        + pieces["constraints.reverse_braking_penalty"] * _reverse_braking(reached, controls)
+        + obstacle_penalty * margin_penalty(to_obstacles, OBSTACLE_BUFFER)
+        + limit_penalty * margin_penalty(to_limits, LIMIT_BUFFER)
+        + pieces["constraints.reverse_braking_penalty"] * reverse_braking(reached, controls)
     )
     return ShootingExpressions(
         controls=controls,
@@ -93,11 +93,11 @@ def parameter_pieces(layout: ParameterLayout, parameters: casadi.SX) -> dict[str
 
 def _tracking_cost(columns: list[casadi.SX], controls: casadi.SX, pieces: dict[str, Any]) -> casadi.SX:
     """The quadratic stage costs and the terminal cost."""
-    cost = _weighted_square(columns[-1] - pieces["terminal.target"], pieces["terminal.weights"])
+    cost = weighted_square(columns[-1] - pieces["terminal.target"], pieces["terminal.weights"])
     for k, state in enumerate(columns[:-1]):
         error = state - pieces["stage.references"][k, :].T
-        cost += _weighted_square(error, pieces["stage.state_weights"])
-        cost += _weighted_square(controls[:, k], pieces["stage.control_weights"])
+        cost += weighted_square(error, pieces["stage.state_weights"])
+        cost += weighted_square(controls[:, k], pieces["stage.control_weights"])
     return cost
 
 
@@ -123,7 +123,7 @@ def limit_margins(state: casadi.SX, stage: int, pieces: dict[str, Any]) -> casad
     )
 
 
-def _reverse_braking(reached: list[casadi.SX], controls: casadi.SX) -> casadi.SX:
+def reverse_braking(reached: list[casadi.SX], controls: casadi.SX) -> casadi.SX:
     """What it costs to brake into reverse.
 
     A real brake stops the robot and no more, while the smooth model would let it push backward. Braking is free while
@@ -133,11 +133,13 @@ def _reverse_braking(reached: list[casadi.SX], controls: casadi.SX) -> casadi.SX
     return sum(controls[ControlIndex.BRAKE, k] * speed for k, speed in enumerate(backward))
 
 
-def _penalty(margins: casadi.SX, buffer: float) -> casadi.SX:
+def margin_penalty(margins: casadi.SX, buffer: float) -> casadi.SX:
+    """The sum of the penalties of `margins`, per unit of slope."""
     return casadi.sum(casadi.vec(huberised_hinge(buffer - margins, buffer)))
 
 
-def _weighted_square(error: casadi.SX, weights: casadi.SX) -> casadi.SX:
+def weighted_square(error: casadi.SX, weights: casadi.SX) -> casadi.SX:
+    """The quadratic cost e' diag(weights) e."""
     return casadi.dot(weights, error * error)
 
 

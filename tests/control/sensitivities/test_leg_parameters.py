@@ -1,0 +1,23 @@
+import numpy as np
+
+import mala_drake.control.sensitivities.leg_parameters as mut
+from mala_drake.control.sensitivities import Columns
+
+
+def test_constant_parameters_have_entries_of_p_as_knobs(small, choose):
+    columns, chosen = Columns(small.layout), choose()
+    leg = mut.ConstantParameters(chosen, columns, ("terminal.target", "dynamics"))
+    assert leg.knobs == 12
+    assert leg.groups == ("terminal.target", "dynamics")
+    step = leg.at(7, np.zeros(6))
+    assert step.parameters is chosen
+    assert step.by_state is None
+    rows, knobs = np.nonzero(step.by_knobs)
+    np.testing.assert_array_equal(rows, columns.of(["terminal.target", "dynamics"]))
+    np.testing.assert_array_equal(knobs, np.arange(12))
+    assert step.by_knobs.shape == (columns.parameters.stop, 12)
+
+
+def test_all_five_groups_are_knobs_if_none_is_chosen(small, choose):
+    columns = Columns(small.layout)
+    assert mut.ConstantParameters(choose(), columns).knobs == columns.size - 6
