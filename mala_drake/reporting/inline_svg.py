@@ -6,7 +6,18 @@ import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from mala_drake.reporting.figures.style import BUSY, CRITERION_COLORS, FAINT, FLOOR, FURNITURE, INK, MUTED, PAPER, WALL
+from mala_drake.reporting.figures.style import (
+    BUSY,
+    CRITERION_COLORS,
+    FAINT,
+    FLOOR,
+    FURNITURE,
+    INK,
+    MUTED,
+    PAPER,
+    PLACE_COLORS,
+    WALL,
+)
 
 COLOR_VARIABLES: Mapping[str, str] = MappingProxyType(
     {
@@ -19,6 +30,7 @@ COLOR_VARIABLES: Mapping[str, str] = MappingProxyType(
         FLOOR: "--floor",
         BUSY: "--busy",
         **{color: f"--{criterion}" for criterion, color in CRITERION_COLORS.items()},
+        **{color: f"--{kind}" for kind, color in PLACE_COLORS.items()},
     }
 )
 """Colors of the figures that the page replaces by its own, so that they suit a light and a dark ground."""

@@ -15,6 +15,7 @@ from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.plans import meal_picture, variant_picture
 from mala_drake.reporting.figures.prediction import prediction_picture
 from mala_drake.reporting.figures.style import styled, words
+from mala_drake.reporting.figures.task_graphs import task_graph_pictures
 from mala_drake.reporting.figures.weights import final_weights_picture, trajectory_picture
 from mala_drake.reporting.findings import headline, learning_sentences, plan_sentences, problems
 from mala_drake.reporting.report_page import Section, report_page
@@ -79,6 +80,7 @@ def _sections(results: Results, ward: Ward) -> Iterator[Section]:
             *prediction_picture(results),
         ),
     )
+    yield Section("tasks", "Tasks", (), tuple(task_graph_pictures(ward)))
     table = condition_table(results)
     if table:
         yield Section("conditions", "Conditions", (), (*condition_picture(results), table))

@@ -71,26 +71,29 @@ def label_ends(axes: Axes, x: float, labels: Sequence[tuple[float, str, str]], *
         )
 
 
-def spaced(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:
-    """Positions in rising order moved as little as needed to be `gap` apart, within [low, high] if there is room.
+def spaced_by_widths(positions: Sequence[float], widths: Sequence[float]) -> list[float]:
+    """Middles of things of some widths, in this order, as near to `positions` as they can be without overlapping.
 
-    Neighbours that are too close form a block about their mean; blocks that touch merge.
+    It is the least squares solution: the distances are taken off, which leaves an isotonic regression, solved by
+    pooling adjacent violators.
     """
-    blocks: list[list[float]] = []  # Each block: sum of the wanted middles, count.
-    for position in positions:
-        blocks.append([position, 1.0])
-        while len(blocks) > 1 and _start(blocks[-1], gap, low, high) < _end(blocks[-2], gap, low, high) + gap:
-            total, count = blocks.pop()
-            blocks[-1][0] += total
-            blocks[-1][1] += count
-    return [_start(block, gap, low, high) + i * gap for block in blocks for i in range(int(block[1]))]
+    offsets, place = [], 0.0
+    for i, width in enumerate(widths):
+        place += (width + widths[i - 1]) / 2 if i else 0.0
+        offsets.append(place)
+    pools: list[tuple[float, int]] = []  # Mean and count.
+    for position, offset in zip(positions, offsets, strict=True):
+        mean, count = position - offset, 1
+        while pools and pools[-1][0] > mean:
+            before, number = pools.pop()
+            mean, count = (mean * count + before * number) / (count + number), count + number
+        pools.append((mean, count))
+    shifts = [mean for mean, count in pools for _ in range(count)]
+    return [shift + offset for shift, offset in zip(shifts, offsets, strict=True)]
 
 
-def _start(block: list[float], gap: float, low: float, high: float) -> float:
-    total, count = block
-    length = (count - 1) * gap
-    return min(max(total / count - length / 2, low), max(high - length, low))
-
-
-def _end(block: list[float], gap: float, low: float, high: float) -> float:
-    return _start(block, gap, low, high) + (block[1] - 1) * gap
+def spaced(positions: Sequence[float], gap: float, low: float, high: float) -> list[float]:
+    """Positions in rising order moved as little as needed to be `gap` apart, within [low, high] if there is room."""
+    placed = spaced_by_widths(positions, [gap] * len(positions))
+    highest = high - gap * (len(placed) - 1)
+    return [max(min(place, highest + i * gap), low + i * gap) for i, place in enumerate(placed)]

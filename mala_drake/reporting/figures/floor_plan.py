@@ -18,6 +18,7 @@ from mala_drake.reporting.figures.style import (
     INK,
     MUTED,
     PAPER,
+    PLACE_COLORS,
     WALL,
     WIDTH,
     new_figure,
@@ -26,7 +27,6 @@ from mala_drake.reporting.figures.style import (
     words,
 )
 from mala_drake.reporting.results import Results
-from mala_drake.ward.furnishing.palette import FUNCTION_COLORS
 from mala_drake.ward.legs import leg_planner
 from mala_drake.ward.shapes import outline
 from mala_drake.ward.ward_map import Furniture, Place, Ward
@@ -208,7 +208,7 @@ def _draw_legs(axes: Axes, ward: Ward, legs: ExecutedLegs, color: str) -> None:
 
 def _mark(axes: Axes, places: Sequence[Place]) -> None:
     for place in places:
-        color = FUNCTION_COLORS[place.category]
+        color = PLACE_COLORS[place.category]
         axes.plot(
             place.x,
             place.y,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right and top."""
@@ -13,6 +14,7 @@ Box = tuple[float, float, float, float]
 _SLIDES = (0.0, -0.25, 0.25, -0.5, 0.5)  # Of a label above or below its point to the side, in its own widths.
 _GAPS = (1.0, 2.2, 3.6, 5.5)  # Of a label from its point, in gaps.
 _RANK = 0.03  # Cost of each candidate that comes before.
+_POINT = 0.1  # Cost of covering a point.
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +28,9 @@ class Label:
 
 
 def place_labels(
-    labels: Sequence[Label],
-    *,
-    obstacles: Sequence[Box] = (),
-    bounds: Box | None = None,
-    gap: float = 1.0,
+    labels: Sequence[Label], *, obstacles: Sequence[Box] = (), bounds: Box | None = None, gap: float = 1.0
 ) -> list[Box]:
-    """A box for each label, chosen one after another, the ones with the least room first.
+    """A box for each label beside its point.
 
     Args:
         labels: in any order.
@@ -40,21 +38,40 @@ def place_labels(
         bounds: within which labels have to be, if possible.
         gap: between a point and the nearest label that is tried.
     """
-    candidates = [_candidates(label, gap) for label in labels]
-    fixed = [
-        [_cost(box, obstacles, bounds) + _mistakable(box, labels, i, gap) for box in boxes]
-        for i, boxes in enumerate(candidates)
+    candidates = [
+        [(box, _RANK * rank + _mistakable(box, labels, i, gap)) for rank, box in enumerate(_candidates(label, gap))]
+        for i, label in enumerate(labels)
     ]
-    order = sorted(range(len(labels)), key=lambda i: (-min(fixed[i]), labels[i].x, labels[i].y))
+    return choose_boxes(candidates, obstacles=obstacles, bounds=bounds)
+
+
+def choose_boxes(
+    candidates: Sequence[Sequence[tuple[Box, float]]],
+    *,
+    obstacles: Sequence[Box] = (),
+    points: NDArray[np.float64] | None = None,
+    bounds: Box | None = None,
+) -> list[Box]:
+    """One of its candidates for each of several labels, chosen one after another, the ones with the least room first.
+
+    Args:
+        candidates: boxes of a label, each with a cost of its own; covering its whole area costs 1.
+        obstacles: boxes that should not be covered.
+        points: single points that should not be covered, shape (n, 2); each costs `_POINT`.
+        bounds: within which labels have to be, if possible.
+    """
+    points = np.empty((0, 2)) if points is None else points
+    costs = [[cost + _cost(box, obstacles, points, bounds) for box, cost in each] for each in candidates]
+    order = sorted(range(len(candidates)), key=lambda i: (-min(costs[i]), i))
     chosen: dict[int, Box] = {}
     for i in order:
         taken = list(chosen.values())
-        costs = [
-            cost + 10.0 * sum(_overlap(box, other) for other in taken) / _area(box) + _RANK * rank
-            for rank, (box, cost) in enumerate(zip(candidates[i], fixed[i], strict=True))
+        total = [
+            cost + 10.0 * sum(_overlap(box, other) for other in taken) / _area(box)
+            for (box, _), cost in zip(candidates[i], costs[i], strict=True)
         ]
-        chosen[i] = candidates[i][int(np.argmin(costs))]
-    return [chosen[i] for i in range(len(labels))]
+        chosen[i] = candidates[i][int(np.argmin(total))][0]
+    return [chosen[i] for i in range(len(candidates))]
 
 
 def _candidates(label: Label, gap: float) -> list[Box]:
@@ -68,11 +85,13 @@ def _candidates(label: Label, gap: float) -> list[Box]:
     return [(x + a - half_width, y + b - half_height, x + a + half_width, y + b + half_height) for a, b in middles]
 
 
-def _cost(box: Box, obstacles: Sequence[Box], bounds: Box | None) -> float:
+def _cost(box: Box, obstacles: Sequence[Box], points: NDArray[np.float64], bounds: Box | None) -> float:
     """What is covered, in areas of the label, and what is out of bounds."""
+    left, bottom, right, top = box
     covered = sum(_overlap(box, other) for other in obstacles) / _area(box)
     outside = 0.0 if bounds is None else 20.0 * (1.0 - _overlap(box, bounds) / _area(box))
-    return covered + outside
+    inside = (points[:, 0] > left) & (points[:, 0] < right) & (points[:, 1] > bottom) & (points[:, 1] < top)
+    return covered + outside + _POINT * float(np.count_nonzero(inside))
 
 
 def _mistakable(box: Box, labels: Sequence[Label], own: int, gap: float) -> float:

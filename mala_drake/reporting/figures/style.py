@@ -6,7 +6,7 @@ criterion that matters most to it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -24,9 +24,21 @@ INK, MUTED, FAINT, PAPER = "#1c2127", "#66707c", "#dfe3e8", "#fdfefe"
 FURNITURE, WALL, FLOOR, BUSY = "#c3cad3", "#8a94a1", "#f3f5f7", "#6a51a3"
 """Of floor plans; the color of congestion is unlike that of any patient."""
 
-CRITERION_COLORS = MappingProxyType(
+CRITERION_COLORS: Mapping[str, str] = MappingProxyType(
     dict(zip(CRITERIA, ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"), strict=True))
 )
+
+PLACE_COLORS: Mapping[str, str] = MappingProxyType(
+    {
+        "home": "#5b6673",
+        "pharmacy": "#0f7a49",
+        "supply": "#2a6bc4",
+        "charger": "#8f7000",
+        "kitchen": "#b45500",
+        "bedside": "#c03a72",
+    }
+)
+"""By kind of place: the hues of the furniture in the 3-D ward, dark enough for text."""
 
 WIDTH = 7.6
 """Inches of a figure as wide as the page."""
