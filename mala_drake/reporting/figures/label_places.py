@@ -15,6 +15,7 @@ _SLIDES = (0.0, -0.25, 0.25, -0.5, 0.5)  # Of a label above or below its point t
 _GAPS = (1.0, 2.2, 3.6, 5.5)  # Of a label from its point, in gaps.
 _RANK = 0.03  # Cost of each candidate that comes before.
 _POINT = 0.1  # Cost of covering a point.
+_ROUNDS = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,9 @@ def choose_boxes(
     points: NDArray[np.float64] | None = None,
     bounds: Box | None = None,
 ) -> list[Box]:
-    """One of its candidates for each of several labels, chosen one after another, the ones with the least room first.
+    """One of its candidates for each of several labels.
+
+    They are chosen one after another, the ones with the least room first, and again once the others are there.
 
     Args:
         candidates: boxes of a label, each with a cost of its own; covering its whole area costs 1.
@@ -64,8 +67,8 @@ def choose_boxes(
     costs = [[cost + _cost(box, obstacles, points, bounds) for box, cost in each] for each in candidates]
     order = sorted(range(len(candidates)), key=lambda i: (-min(costs[i]), i))
     chosen: dict[int, Box] = {}
-    for i in order:
-        taken = list(chosen.values())
+    for i in order * _ROUNDS:
+        taken = [box for other, box in chosen.items() if other != i]
         total = [
             cost + 10.0 * sum(_overlap(box, other) for other in taken) / _area(box)
             for (box, _), cost in zip(candidates[i], costs[i], strict=True)

@@ -9,7 +9,7 @@ from mala_drake.planning.care_tasks import TASK_NAMES, CareTask
 from mala_drake.planning.task import PlanningTask
 from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.style import FLOOR, INK, MUTED, PAPER, PLACE_COLORS, WIDTH, new_figure, words
-from mala_drake.reporting.figures.task_sketch import TYPE_SIZE, Arrow, Node, Sketch, sketch
+from mala_drake.reporting.figures.task_sketch import LABEL_SIZE, TYPE_SIZE, Arrow, Node, Sketch, sketch
 from mala_drake.reporting.figures.task_texts import TaskTexts
 from mala_drake.reporting.task_graph import TaskGraph, task_graph
 from mala_drake.ward.ward_map import Ward
@@ -120,7 +120,7 @@ def _write(axes: Axes, arrow: Arrow, box: tuple[float, float, float, float], col
         arrow.text,
         ha="right" if leftward else "left",
         va="center",
-        fontsize=TYPE_SIZE - 0.3,
+        fontsize=LABEL_SIZE,
         color=color,
         linespacing=1.05,
         zorder=5,

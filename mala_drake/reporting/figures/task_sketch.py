@@ -16,16 +16,16 @@ from mala_drake.reporting.figures.layered_layout import LayeredLayout, layered_l
 from mala_drake.reporting.figures.task_texts import TaskTexts
 from mala_drake.reporting.task_graph import Edge, Part, TaskGraph
 
-TYPE_SIZE = 6.0
-"""Points of all text."""
+TYPE_SIZE, LABEL_SIZE = 6.0, 5.7
+"""Points of the text in boxes and beside arrows."""
 
-_CHARACTER = 0.0475  # Inches of a character of this size, about.
+_CHARACTER = 0.0475  # Inches of a character in a box, about.
 _LINE = 0.105  # Inches of a line.
 _ROOM = 0.22  # Inches between two layers, beside the lines of the longest text between them.
 _GAPS = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)  # Inches between neighbours in a layer: the first that fits is taken.
 _BETWEEN_PARTS = 0.5  # Inches.
 _BESIDE = 0.05  # Inches of a text from its arrow.
-_ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26)  # Where on an arrow its text may be, as parts of its length.
+_ALONG = (0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74)  # Where on an arrow its text may be, as parts of its length.
 
 Point = tuple[float, float]
 
@@ -232,7 +232,7 @@ def _label_boxes(nodes: Sequence[Node], arrows: Sequence[Arrow]) -> list[Box]:
     points = np.concatenate([arrow.at(np.linspace(0.0, 1.0, 25)) for arrow in arrows])
     candidates = []
     for arrow in (arrow for arrow in arrows if arrow.text):
-        width, height = _width(arrow.text) - 0.1, _LINE * (arrow.text.count("\n") + 1)
+        width, height = _label_width(arrow.text), _LINE * (arrow.text.count("\n") + 1)
         leftward = arrow.path[-1][0] < arrow.path[0][0] - 0.05
         found = []
         for rank, (x, y) in enumerate(arrow.at(_ALONG)):
@@ -243,6 +243,10 @@ def _label_boxes(nodes: Sequence[Node], arrows: Sequence[Arrow]) -> list[Box]:
                 )
         candidates.append(found)
     return choose_boxes(candidates, obstacles=[node.box for node in nodes], points=points)
+
+
+def _label_width(text: str) -> float:
+    return _CHARACTER * LABEL_SIZE / TYPE_SIZE * max(map(len, text.split("\n")))
 
 
 def _width(text: str) -> float:
