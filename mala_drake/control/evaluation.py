@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .buffered_function import BufferedFunction
+from mala_drake.buffered_function import BufferedFunction
+
 from .optimal_control_problem import OptimalControlProblem
 
 Vector = NDArray[np.float64]

@@ -11,8 +11,9 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
+from mala_drake.buffered_function import BufferedFunction, densified
+
 from . import model
-from .buffered_function import BufferedFunction, densified
 from .condensing import state_sensitivities
 from .optimal_control_problem import OptimalControlProblem
 from .shooting import LIMIT_BUFFER, OBSTACLE_BUFFER, limit_margins, obstacle_margins, parameter_pieces

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from pydrake.autodiffutils import InitializeAutoDiff
 from pydrake.solvers import MathematicalProgram, MathematicalProgramResult
 
-from .buffered_function import BufferedFunction, densified
+from mala_drake.buffered_function import BufferedFunction, densified
+
 from .optimal_control_problem import OptimalControlProblem
 
 Vector = NDArray[np.float64]

@@ -14,8 +14,9 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
+from mala_drake.buffered_function import BufferedFunction, densified
+
 from . import model
-from .buffered_function import BufferedFunction, densified
 from .model import ControlIndex, StateIndex
 from .optimal_control_problem import OptimalControlProblem
 from .penalty import huberised_hinge

@@ -8,11 +8,11 @@ import casadi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mala_drake.buffered_function import densified
 from mala_drake.clock import TICK
 from mala_drake.errors import BadInput
 
 from . import model
-from .buffered_function import densified
 from .layout import ParameterLayout
 from .parameters import MpcParameters
 from .shooting import ShootingExpressions, build_expressions

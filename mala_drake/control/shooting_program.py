@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from pydrake.autodiffutils import AutoDiffXd
 from pydrake.solvers import MathematicalProgram, MathematicalProgramResult, SolverInterface, SolverOptions
 
-from .buffered_function import BufferedFunction
+from mala_drake.buffered_function import BufferedFunction
+
 from .condensing import whitening
 from .hard_clearance import HardClearance
 from .model import CONTROL_SIZE

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mala_drake.control.optimal_control_problem as mut
-from mala_drake.control.buffered_function import BufferedFunction
+from mala_drake.buffered_function import BufferedFunction
 from mala_drake.control.shooting import LIMITS
 from mala_drake.errors import BadInput
 from mala_drake.messages import Shape

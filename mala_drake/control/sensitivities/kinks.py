@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mala_drake.control.buffered_function import BufferedFunction, densified
+from mala_drake.buffered_function import BufferedFunction, densified
 from mala_drake.control.model import ControlIndex, StateIndex
 from mala_drake.control.obstacles import ObstacleIndex
 from mala_drake.control.shooting import LIMIT_BUFFER, OBSTACLE_BUFFER, limit_margins, obstacle_margins

@@ -14,7 +14,7 @@ import casadi
 import numpy as np
 from numpy.typing import NDArray
 
-from mala_drake.control.buffered_function import BufferedFunction, densified
+from mala_drake.buffered_function import BufferedFunction, densified
 from mala_drake.control.model import CONTROL_SIZE, DYNAMICS_SIZE, STATE_SIZE
 
 from .kkt_point import KktPoint

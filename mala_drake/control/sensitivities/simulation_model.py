@@ -13,9 +13,9 @@ import casadi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mala_drake.buffered_function import BufferedFunction, densified
 from mala_drake.clock import TICK
 from mala_drake.control import model
-from mala_drake.control.buffered_function import BufferedFunction, densified
 from mala_drake.errors import BadInput
 from mala_drake.messages import Message
 

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import casadi
 
+from mala_drake.buffered_function import densified
 from mala_drake.control import model
-from mala_drake.control.buffered_function import densified
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.shooting import (
     LIMIT_BUFFER,

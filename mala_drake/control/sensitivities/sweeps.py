@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mala_drake.control.buffered_function import BufferedFunction
+from mala_drake.buffered_function import BufferedFunction
 from mala_drake.control.model import CONTROL_SIZE, STATE_SIZE
 from mala_drake.messages import Message
 

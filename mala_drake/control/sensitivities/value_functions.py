@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mala_drake.control.buffered_function import BufferedFunction
+from mala_drake.buffered_function import BufferedFunction
 from mala_drake.control.initial_guess import initial_guesses
 from mala_drake.control.model import STATE_SIZE
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
