@@ -12,6 +12,7 @@ from typing import Any
 from mala_drake.configuration import load_typed
 from mala_drake.control.solver import SOLVER_NAMES
 from mala_drake.errors import BadInput
+from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
 from mala_drake.messages import Shape
 from mala_drake.patient.profiles import PROFILES, profile_weights
 from mala_drake.planning.care_tasks import TASK_NAMES
@@ -22,8 +23,6 @@ from mala_drake.ward.models import ward_models
 from mala_drake.ward.routes import BODY_RADIUS
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import LoadWard, Ward
-
-LEARNER_NAMES = ("projected_gradient", "fixed")
 
 
 @dataclass
@@ -75,10 +74,12 @@ class PatientConfig:
 class LearnerConfig:
     """How the preferences are learned."""
 
-    name: str = "projected_gradient"  # projected_gradient (the paper's) or fixed.
-    initial_weights: list[float] = field(default_factory=list)  # Uniform if empty.
-    learning_rate: float = 0.12
-    exploration: float = 0.15  # Standard deviation added to the weights that are planned with; decays.
+    name: str = "posterior"  # posterior, projected_gradient (the paper's), reference_gradient, fixed, random, bandit.
+    initial_weights: list[float] = field(default_factory=list)  # Of the gradient learners and fixed; uniform if empty.
+    learning_rate: float = 0.12  # eta of the gradient learners.
+    exploration: float = 0.15  # Of the gradient learners: standard deviation added to the planning weights.
+    exploration_decay: float = 0.2  # How fast it falls with the number of episodes; 0 is never.
+    exploration_until: float = 0.03  # Of the posterior: the weights' deviation at which it stops; 1 is at once.
 
 
 @dataclass
@@ -179,6 +180,7 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
     ):
         if weights:
             validated_weights(weights, where=at + name)
+    make_learner(scenario.learner, where=at + "learner")
     ward = _checked_ward(scenario, at)
     kinds = sorted({item.kind for item in all_items(ward, ("medication",))})
     for i, kind in enumerate(scenario.world.wrong_items):
@@ -232,6 +234,8 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("patient.missing", patient.missing, 0.0, 1.0),
         ("learner.learning_rate", scenario.learner.learning_rate, 0.0, 10.0),
         ("learner.exploration", scenario.learner.exploration, 0.0, 10.0),
+        ("learner.exploration_decay", scenario.learner.exploration_decay, 0.0, 10.0),
+        ("learner.exploration_until", scenario.learner.exploration_until, 1e-6, 1.0),
         ("planner.max_actions", scenario.planner.max_actions, 1, 10_000),
         ("planner.max_expansions", scenario.planner.max_expansions, 1, 100_000_000),
         ("control.horizon", control.horizon, 2, 200),

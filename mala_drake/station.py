@@ -13,15 +13,12 @@ from pydrake.systems.primitives import Adder, Demultiplexer
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
-from mala_drake.errors import BadInput
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
-from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray
-from mala_drake.learning.fixed_weights import FixedWeights
+from mala_drake.learning.abstract_preference_learner import FloatArray
+from mala_drake.learning.make_learner import make_learner
 from mala_drake.learning.preference_learner import PreferenceLearner
-from mala_drake.learning.projected_gradient import ProjectedGradient
 from mala_drake.patient.patient import Patient
 from mala_drake.planning.task_planner import TaskPlanner
-from mala_drake.preferences import UNIFORM_WEIGHTS
 from mala_drake.robot.arm import Arm
 from mala_drake.robot.battery import Battery
 from mala_drake.robot.drivetrain import Drivetrain
@@ -229,7 +226,7 @@ class _StationBuilder:
         )
         self._learner = self._add(
             "preference_learner",
-            PreferenceLearner(learner=_make_learner(scenario), seed=scenario.random_seed),
+            PreferenceLearner(learner=make_learner(scenario.learner), seed=scenario.random_seed),
         )
 
     def connect(self) -> None:
@@ -311,15 +308,3 @@ def _add_obstacle(plant: MultibodyPlant, config: ObstacleConfig) -> None:
     name = f"obstacle/{config.name}"
     plant.RegisterCollisionGeometry(plant.world_body(), X_WO, box, name, CoulombFriction(0.5, 0.5))
     plant.RegisterVisualGeometry(plant.world_body(), X_WO, box, name, list(_TROLLEY_COLOR))
-
-
-def _make_learner(scenario: Scenario) -> AbstractPreferenceLearner:
-    config = scenario.learner
-    weights = tuple(config.initial_weights) or UNIFORM_WEIGHTS
-    if config.name == "projected_gradient":
-        return ProjectedGradient(
-            initial_weights=weights, step_size=config.learning_rate, exploration=config.exploration
-        )
-    if config.name == "fixed":
-        return FixedWeights(weights=weights)
-    raise BadInput("learner.name", repr(config.name), "projected_gradient or fixed")

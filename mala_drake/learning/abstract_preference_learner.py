@@ -55,6 +55,10 @@ class AbstractPreferenceLearner(ABC):
     def deviation(self, state: FloatArray) -> FloatArray | None:
         """The standard deviation of each weight, (5,), or None for a point estimate."""
 
+    def interval(self, state: FloatArray, probability: float = 0.9) -> FloatArray | None:  # noqa: ARG002
+        """The credible interval of each weight, lower and upper ends (5, 2), or None for a point estimate."""
+        return None
+
     @abstractmethod
     def planning_weights(self, state: FloatArray, generator: np.random.Generator) -> FloatArray:
         """Weights to plan the next episode with, explored by drawing from `generator`: (5,), on the simplex."""

@@ -51,8 +51,7 @@ def conspicuousness(episodes: Sequence[Observation], prediction: Prediction) -> 
     if len(episodes) < 2 or prediction.degrees_of_freedom < _LEAST_FREEDOM:
         return -math.inf
     return min(
-        _misfit([episode for j, episode in enumerate(episodes) if j != out], prediction)
-        for out in range(len(episodes))
+        _misfit([episode for j, episode in enumerate(episodes) if j != out], prediction) for out in range(len(episodes))
     )
 
 

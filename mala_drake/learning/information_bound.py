@@ -1,9 +1,9 @@
 """How well preference weights can be known at all: the Cramer-Rao bound with the simplex constraint.
 
-A rating r_i = 5 - 4 f_i w_i + eps_i with eps_i ~ N(0, sigma^2) carries the information 16 f_i^2 / sigma^2 about w_i. The
-weights sum to one, so only directions within the simplex are uncertain: with U an orthonormal basis of the vectors that
-sum to zero and J the information, the covariance of an unbiased estimate is at least U (U' J U)^-1 U' (Stoica & Ng,
-"On the Cramer-Rao bound under parametric constraints", 1998).
+A rating r_i = 5 - 4 f_i w_i + eps_i with eps_i ~ N(0, sigma^2) carries the information 16 f_i^2 / sigma^2 about w_i.
+The weights sum to one, so only directions within the simplex are uncertain: with U an orthonormal basis of the vectors
+that sum to zero and J the information, the covariance of an unbiased estimate is at least U (U' J U)^-1 U' (Stoica &
+Ng, "On the Cramer-Rao bound under parametric constraints", 1998).
 """
 
 from __future__ import annotations

@@ -33,8 +33,8 @@ _TRUSTED = 14.0  # Degrees of freedom of the noise estimate from which on a rati
 class Posterior(AbstractPreferenceLearner):
     """Bayesian regression of the ratings, r_i = 5 - 4 f_i w_i + eps_i, on the simplex, with unknown noise.
 
-    The prior is uniform on the simplex, and an inverse gamma for the noise variance. The estimate is the posterior mean,
-    the deviation the posterior's: a weight whose feature is always near zero stays as uncertain as it was.
+    The prior is uniform on the simplex, and an inverse gamma for the noise variance. The estimate is the posterior
+    mean, the deviation the posterior's: a weight whose feature is always near zero stays as uncertain as it was.
 
     - A rating of exactly 5 or 1 may have been cut there: it counts as a bound, not as a value. Ratings beyond 5 show
       that the patient does not clip, and count as they are.
@@ -53,7 +53,7 @@ class Posterior(AbstractPreferenceLearner):
     Attributes:
         typical_noise: a guess at the standard deviation of a rating.
         noise_confidence: a of the inverse gamma prior; 1.5 leaves the noise open within a factor of about three.
-        exploration_until: deviation of a weight below which there is no more exploration; 1 or more for none at all.
+        exploration_until: deviation of a weight below which there is no more exploration; 1 for none at all.
 
     Raises:
         BadInput: if a number is not positive and finite.
@@ -107,7 +107,7 @@ class Posterior(AbstractPreferenceLearner):
     def planning_weights(self, state: FloatArray, generator: np.random.Generator) -> FloatArray:
         """A draw from the posterior, or its mean once all weights are known well enough."""
         posterior = self.posterior(state)
-        if posterior.deviation.max() <= self.exploration_until or self.exploration_until >= 1.0:
+        if posterior.deviation.max() <= self.exploration_until:
             return posterior.mean
         return posterior.draw(generator)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,10 +28,18 @@ class ProjectedGradient(AbstractPreferenceLearner):
     Exploration adds N(0, s_n^2) noise to each weight and projects: s_n = exploration / (1 + exploration_decay n),
     where n counts from 1, being one more than the number of rated episodes so far.
 
-    The state is the five weights followed by the number of rated episodes.
+    The public reference implementation of the paper departs from this in three ways, each an option here and all
+    together `reference_variant`: the step eta_n = eta / (1 + step_decay n) shrinks; the new weights are the average
+    `mixing` new + (1 - mixing) old; and a bias b_i of each criterion's ratings is learned with the same step, the
+    predicted ratings being 5 - 4 f_i w_i + b_i.
+
+    The state is the five weights, the number of rated episodes, and the five biases.
 
     Attributes:
         step_size: eta.
+        step_decay: how fast the step falls with n, the number of this rated episode from 1; 0 in the paper.
+        mixing: share of the new weights, in (0, 1]; 1 in the paper.
+        learn_bias: whether a bias is learned; not in the paper.
         exploration: standard deviation of the planning weights' noise at n = 0.
         exploration_decay: how fast it falls.
         initial_weights: on the simplex; uniform when nothing is known about the patient.
@@ -40,30 +49,43 @@ class ProjectedGradient(AbstractPreferenceLearner):
     """
 
     step_size: float = 0.12
+    step_decay: float = 0.0
+    mixing: float = 1.0
+    learn_bias: bool = False
     exploration: float = 0.15
     exploration_decay: float = 0.2
     initial_weights: tuple[float, ...] = UNIFORM_WEIGHTS
 
     def __post_init__(self) -> None:
-        for name in ("step_size", "exploration", "exploration_decay"):
+        for name in ("step_size", "step_decay", "exploration", "exploration_decay"):
             number = getattr(self, name)
             if not (math.isfinite(number) and number >= 0.0):
                 raise BadInput(f"learner.{name}", str(number), "a finite number >= 0")
+        if not 0.0 < self.mixing <= 1.0:
+            raise BadInput("learner.mixing", str(self.mixing), "a number in (0, 1]")
         validated_weights(self.initial_weights, where="learner.initial_weights")
 
+    @classmethod
+    def reference_variant(cls, **settings: Any) -> ProjectedGradient:
+        """The learner of the paper's public reference implementation; other settings as given."""
+        return cls(step_decay=0.15, mixing=0.6, learn_bias=True, **settings)
+
     def initial_state(self) -> FloatArray:
-        """The initial weights and the count 0."""
-        return np.array([*self.initial_weights, 0.0])
+        """The initial weights, the count 0 and no bias."""
+        return np.array([*self.initial_weights, 0.0, *np.zeros(_SIZE)])
 
     def update(self, state: FloatArray, *, ratings: Sequence[float | None], features: Sequence[float]) -> FloatArray:
         """One projected gradient step on the criteria that were rated; the state unchanged if none was."""
         rating, feature, mask = rated(ratings, features)
         if not mask.any():
             return state.copy()
-        weights = state[:_SIZE]
-        predicted = 5.0 - 4.0 * feature * weights
-        gradient = np.where(mask, 4.0 * feature * (rating - predicted), 0.0)
-        return np.append(project_onto_simplex(weights - self.step_size * gradient), state[_SIZE] + 1.0)
+        weights, count, bias = state[:_SIZE], state[_SIZE] + 1.0, state[_SIZE + 1 :]
+        error = np.where(mask, rating - (5.0 - 4.0 * feature * weights + bias), 0.0)
+        step = self.step_size / (1.0 + self.step_decay * count)
+        moved = project_onto_simplex(weights - step * 4.0 * feature * error)
+        # Written so that with the paper's mixing of 1 the new weights are taken to the last bit.
+        mixed = moved + (1.0 - self.mixing) * (weights - moved)
+        return np.concatenate((mixed, [count], bias + step * error if self.learn_bias else bias))
 
     def updates(self, state: FloatArray) -> int:
         """The number of rated episodes."""

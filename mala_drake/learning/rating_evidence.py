@@ -47,7 +47,7 @@ class Observation:
 
     @property
     def values(self) -> FloatArray:
-        """y = (5 - r) / 4."""
+        """Y = (5 - r) / 4."""
         return (BEST_RATING - self.ratings) / _PER_FEATURE
 
     @property
@@ -135,9 +135,7 @@ class Evidence:
         information, moment = self.information.copy(), self.moment.copy()
         information[criterion] += precision
         moment[criterion] += precision * mean
-        return replace(
-            self, information=information, moment=moment, squares=self.squares + precision * mean**2
-        )
+        return replace(self, information=information, moment=moment, squares=self.squares + precision * mean**2)
 
     def forgotten(self, weights: FloatArray) -> Evidence:
         """Nothing is known about the weights any more; what was learned about the noise stays."""
@@ -172,7 +170,9 @@ def censored_belief(
     z = sign * (limit - feature * mean) / spread
     density = math.exp(-0.5 * z * z) / math.sqrt(math.tau)
     probability = 0.5 * math.erfc(-z / math.sqrt(2.0))
-    ratio = density / probability if probability > 1e-12 else -z + 1.0 / min(z, -1.0)  # The tail's expansion.
+    if not probability > 1e-200:
+        return None  # As good as impossible: a moment match would be numerically empty.
+    ratio = density / probability
     gain = feature * deviation**2 / spread
     new_mean = mean - sign * gain * ratio
     shrink = ratio * (ratio + z)

@@ -30,6 +30,7 @@ _SIZE = len(CRITERIA)
 _FREEDOM = _SIZE - 1  # Dimension of the simplex.
 _BASIS = sum_zero_basis(_SIZE)
 _HALF = 2048  # Points of each component of the mixture.
+_ROUNDS, _SETTLED = 20, 1e-4  # Of the search for the middle of the posterior, and when it ends.
 _TAIL = 6.0  # Degrees of freedom of the drawn t distribution: heavier tails than any posterior but the vaguest.
 _VOLUME = math.sqrt(_SIZE) / math.factorial(_FREEDOM)  # Of the simplex, in its own dimension.
 _SIMPLEX_DEVIATION = math.sqrt((_SIZE - 1.0) / (_SIZE**2 * (_SIZE + 1.0)))  # Of a weight that nothing is known about.
@@ -112,11 +113,15 @@ def _centre_and_factor(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
     basis, middle = _BASIS, np.full(_SIZE, 1.0 / _SIZE)
     prior = np.eye(_FREEDOM) / _SIMPLEX_DEVIATION**2
     centre, precision = middle, prior
-    for _ in range(2):  # The noise level depends on the centre and the other way round; twice is near enough.
+    for _ in range(_ROUNDS):  # The noise level depends on the centre and the other way round.
         variance = evidence.noise_variance(centre)
         precision = prior + basis.T @ (evidence.information[:, None] * basis) / variance
         gradient = basis.T @ (evidence.moment - evidence.information * middle) / variance
-        centre = project_onto_simplex(middle + basis @ np.linalg.solve(precision, gradient))
+        moved = project_onto_simplex(middle + basis @ np.linalg.solve(precision, gradient))
+        settled = np.abs(moved - centre).max() < _SETTLED
+        centre = moved
+        if settled:
+            break
     return centre, basis @ np.linalg.cholesky(np.linalg.inv(precision))
 
 

@@ -144,3 +144,34 @@ def test_settings_out_of_range_are_refused(options, where):
     with pytest.raises(BadInput) as error:
         ProjectedGradient(**options)
     assert error.value.where == where
+
+
+def test_the_reference_variant_shrinks_its_step_mixes_and_learns_a_bias():
+    """One step by hand: eta / 1.15, the mean of 0.6 new and 0.4 old, and a bias of the same step."""
+    learner = ProjectedGradient.reference_variant()
+    feature, rating = np.full(5, 0.5), np.array([4.0, 4.8, 4.6, 4.6, 4.6])
+    state = learner.update(learner.initial_state(), ratings=rating.tolist(), features=feature.tolist())
+    step, error = 0.12 / 1.15, rating - (5.0 - 4.0 * 0.5 * 0.2)
+    moved = project_onto_simplex(0.2 - step * 4.0 * 0.5 * error)
+    np.testing.assert_allclose(learner.estimate(state), 0.6 * moved + 0.4 * 0.2)
+    np.testing.assert_allclose(state[6:], step * error)
+
+
+def test_the_variant_learns_the_bias_of_a_patient_who_rates_one_criterion_low():
+    truth, bias = np.array(PROFILES["speed_oriented"]), np.array([0.0, -0.4, 0.0, 0.0, 0.0])
+    biased, plain = ProjectedGradient.reference_variant(), ProjectedGradient()
+    with_bias, without = biased.initial_state(), plain.initial_state()
+    for episode in range(1000):
+        feature = keyed_generator(0, episode, "features").uniform(0.2, 0.9, 5)
+        rating = expected_ratings(feature, truth) + bias
+        with_bias = biased.update(with_bias, ratings=rating, features=feature)
+        without = plain.update(without, ratings=rating, features=feature)
+    distance = preference_distance(biased.estimate(with_bias), truth)
+    assert distance < 0.75 * preference_distance(plain.estimate(without), truth)
+    assert -0.45 < with_bias[7] < -0.1
+
+
+@pytest.mark.parametrize("mixing", [0.0, 1.2, math.nan])
+def test_a_mixing_that_is_no_share_is_refused(mixing):
+    with pytest.raises(BadInput, match="mixing"):
+        ProjectedGradient(mixing=mixing)
