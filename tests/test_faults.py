@@ -33,7 +33,7 @@ class Notes:
 def one_episode(**changes):
     """One episode of a robot that knows its patient is in a hurry; keyword arguments set `section__field`."""
     scenario = Scenario(episodes=1)
-    scenario.learner.exploration = 0.0
+    scenario.learner.name = "fixed"
     scenario.learner.initial_weights = list(PROFILES["speed_oriented"])
     scenario.world.wrong_item_probability = 0.0
     for name, value in changes.items():

@@ -11,6 +11,7 @@ from pydrake.systems.framework import PortDataType
 from mala_drake import station as mut
 from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.errors import BadInput
+from mala_drake.learning import Posterior
 from mala_drake.robot.plant_state import V_X, X, Y, yaw_of
 from mala_drake.scenario import ObstacleConfig, Scenario
 
@@ -122,10 +123,13 @@ def test_a_later_start_on_the_clock_changes_nothing_but_the_clock(station):
 
 def test_learned_weights_are_carried_into_the_next_episode(station):
     context = station.CreateDefaultContext()
-    learned = np.array([0.4, 0.3, 0.1, 0.1, 0.1, 1.0])
+    learner = Posterior()
+    learned = learner.update(learner.initial_state(), ratings=(3.0, 4.0, 4.5, 4.5, 4.5), features=(0.9,) * 5)
     mut.StartEpisode(station, context, episode=1, learner_state=learned)
     assert mut.learner_state_of(station, context) == pytest.approx(learned)
-    assert read(station, context, "preference_learner", "preferences").estimate == pytest.approx(learned[:5])
+    assert read(station, context, "preference_learner", "preferences").estimate == pytest.approx(
+        learner.estimate(learned)
+    )
 
 
 def test_abstract_ports_carry_immutable_messages(station):
