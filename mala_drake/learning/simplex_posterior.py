@@ -29,7 +29,7 @@ FloatArray = npt.NDArray[np.float64]
 _SIZE = len(CRITERIA)
 _FREEDOM = _SIZE - 1  # Dimension of the simplex.
 _BASIS = sum_zero_basis(_SIZE)
-_HALF = 2048  # Points of each component of the mixture.
+_HALF = 2050  # Points of each component of the mixture.
 _ROUNDS, _SETTLED = 20, 1e-4  # Of the search for the middle of the posterior, and when it ends.
 _TAIL = 6.0  # Degrees of freedom of the drawn t distribution: heavier tails than any posterior but the vaguest.
 _VOLUME = math.sqrt(_SIZE) / math.factorial(_FREEDOM)  # Of the simplex, in its own dimension.
@@ -152,7 +152,8 @@ def _draws() -> tuple[FloatArray, FloatArray]:
     scales = np.sqrt(_TAIL / generator.chisquare(_TAIL, _HALF // 2))
     tails = scales[:, None] * normals
     draws = np.vstack((tails, -tails))  # Antithetic: their mean is exactly zero.
-    uniform = generator.dirichlet(np.ones(_SIZE), _HALF)
+    some = generator.dirichlet(np.ones(_SIZE), _HALF // _SIZE)
+    uniform = np.vstack([np.roll(some, shift, axis=1) for shift in range(_SIZE)])  # No criterion is special.
     for array in (draws, uniform):
         array.setflags(write=False)
     return draws, uniform

@@ -90,7 +90,7 @@ def test_an_episode_out_of_time_has_failed_and_the_next_one_begins_anew(tmp_path
     assert max(seconds for _, seconds, _ in notes.actions) <= 1.0
     # Each explores with weights of its own, but nothing was learned.
     assert notes.records[0].plan_cost != notes.records[1].plan_cost
-    assert notes.records[1].weights_after == [0.2] * 5
+    assert notes.records[1].weights_after == pytest.approx([0.2] * 5)
 
 
 def test_a_new_run_replaces_the_results_of_an_earlier_one(tmp_path):
