@@ -6,7 +6,7 @@ from .analysis import PolicySensitivity, SensitivityAnalysis
 from .closed_loop import ClosedLoop, ClosedLoopRun
 from .columns import GROUPS, INITIAL_STATE, LOWER, UPPER, Columns
 from .kkt_point import KktPoint
-from .leg_parameters import ConstantParameters, LegParameters, StepParameters
+from .leg_parameters import ConstantParameters, LegParameters, ScheduledParameters, StepParameters
 from .leg_sensitivity import AdjointSensitivity, ForwardSensitivity, adjoint, forward
 from .primal_dual_sensitivity import PrimalDualSensitivity
 from .regularity import Regularity
@@ -29,6 +29,7 @@ __all__ = [
     "PolicySensitivity",
     "PrimalDualSensitivity",
     "Regularity",
+    "ScheduledParameters",
     "SensitivityAnalysis",
     "SimulationModel",
     "StepParameters",

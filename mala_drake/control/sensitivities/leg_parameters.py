@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -61,3 +61,22 @@ class ConstantParameters:
     def at(self, step: int, state: Vector) -> StepParameters:  # noqa: ARG002 - constant means that they do not matter.
         """The parameters."""
         return self._constant
+
+
+class ScheduledParameters:
+    """Parameters by the number of the step, whatever the state; the last ones stay."""
+
+    def __init__(self, steps: Sequence[StepParameters], groups: Iterable[str]) -> None:
+        """Takes the parameters of each step.
+
+        Args:
+            steps: of the first, second ... solve, at least one.
+            groups: names of groups or pieces of p that the knobs touch.
+        """
+        self.groups = tuple(groups)
+        self.knobs = steps[0].by_knobs.shape[1]
+        self._steps = tuple(steps)
+
+    def at(self, step: int, state: Vector) -> StepParameters:  # noqa: ARG002 - the schedule does not look at the state.
+        """The parameters of the solve number `step`."""
+        return self._steps[min(step, len(self._steps) - 1)]
