@@ -206,7 +206,9 @@ def report(
 
 @app.command()
 def bench(
-    name: Annotated[str | None, typer.Argument(help="plant, mpc, plan or sensitivities; all if left out.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="plant, mpc, agreement, plan or sensitivities; all if left out.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,
 ) -> None:
     """Run the benchmarks and print a table."""

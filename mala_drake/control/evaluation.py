@@ -44,7 +44,11 @@ class Evaluation:
         self._trajectory()
         return [np.array(result.T, order="C") for result in self._trajectory.results]
 
-    def best(self, candidates: tuple[Vector, ...]) -> Vector:
-        """The candidate of lowest cost: a warm start that went bad must not decide which local optimum is found."""
+    def best(self, candidates: tuple[Vector, ...]) -> tuple[Vector, float]:
+        """The candidate of lowest cost, and its cost.
+
+        A warm start that went bad must not decide which local optimum is found.
+        """
         costs = [self.cost(candidate) for candidate in candidates]
-        return candidates[int(np.argmin(np.where(np.isfinite(costs), costs, np.inf)))]
+        chosen = int(np.argmin(np.where(np.isfinite(costs), costs, np.inf)))
+        return candidates[chosen], costs[chosen]

@@ -25,13 +25,14 @@ class Iterate:
 
     controls: Vector  # Shape (N, 3).
     cost: float
-    gradient: Vector  # Of the cost, shape (N, 3).
+    gradient: Vector | None = None  # Of the cost, shape (N, 3), where it has been evaluated.
     violation: float = 0.0  # Metres of hard clearance missing, over all stages.
 
     @property
     def finite(self) -> bool:
-        """Whether the cost and its gradient exist here."""
-        return bool(np.isfinite(self.cost + self.violation) and np.isfinite(self.gradient).all())
+        """Whether the cost, and the gradient if there is one, exist here."""
+        known = self.gradient is None or np.isfinite(self.gradient).all()
+        return bool(known and np.isfinite(self.cost + self.violation))
 
     def merit(self, price: float) -> float:
         """Cost and `price` per metre of violation."""

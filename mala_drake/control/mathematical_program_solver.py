@@ -98,7 +98,7 @@ class MathematicalProgramSolver(ABC):
         # An absurd state overflows somewhere; every result is checked for that, so numpy need not warn as well.
         with np.errstate(over="ignore", invalid="ignore"):
             guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
-            return self._run_rounds(self._evaluation.best(guesses), packed, parameters)
+            return self._run_rounds(self._evaluation.best(guesses)[0], packed, parameters)
 
     def _run_rounds(self, origin: Vector, packed: Vector, parameters: MpcParameters) -> Solution:
         evaluations = 0

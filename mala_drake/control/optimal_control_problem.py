@@ -88,13 +88,20 @@ class OptimalControlProblem:
         return model.step_function(self.period)
 
     @cached_property
+    def stage(self) -> casadi.Function:
+        """(z, u, p^f) -> (z_next, d z_next / d z, d z_next / d u) over one control period."""
+        state, control = casadi.SX.sym("state", model.STATE_SIZE), casadi.SX.sym("control", model.CONTROL_SIZE)
+        dynamics = casadi.SX.sym("dynamics", model.DYNAMICS_SIZE)
+        next_state = model.step(state, control, dynamics, self.period)
+        outputs = [next_state, casadi.jacobian(next_state, state), casadi.jacobian(next_state, control)]
+        return densified("stage", [state, control, dynamics], outputs)
+
+    @cached_property
     def stage_jacobians(self) -> casadi.Function:
         """(Z, U, p^f) -> (A, B): all stages' d z_next / d z, shape (6, 6 N), and d z_next / d u, shape (6, 3 N)."""
         state, control = casadi.SX.sym("state", model.STATE_SIZE), casadi.SX.sym("control", model.CONTROL_SIZE)
         dynamics = casadi.SX.sym("dynamics", model.DYNAMICS_SIZE)
-        next_state = model.step(state, control, dynamics, self.period)
-        jacobians = [casadi.jacobian(next_state, state), casadi.jacobian(next_state, control)]
-        one_stage = densified("stage", [state, control, dynamics], jacobians)
+        one_stage = densified("jacobians", [state, control, dynamics], self.stage(state, control, dynamics)[1:])
         return one_stage.map("stage_jacobians", "serial", self.horizon, [2], [])
 
     def rollout(self, initial_state: ArrayLike, controls: ArrayLike, parameters: MpcParameters) -> Vector:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.errors import BadInput
 
+from .globalisation import Iterate
 from .initial_guess import initial_guesses
 from .layout import ParameterLayout
 from .optimal_control_problem import OptimalControlProblem
@@ -135,7 +136,7 @@ class RealTimeIterationSolver:
         # An absurd state overflows somewhere; every result is checked for that, so numpy need not warn as well.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
-            search = SqpSearch(self._tools, state, packed, parameters, evaluation.best(guesses))
+            search = SqpSearch(self._tools, state, packed, parameters, Iterate(*evaluation.best(guesses)))
             search.linearise()
             for _ in range(self._sqp_iterations - 1):
                 if search.over:
@@ -152,7 +153,9 @@ class RealTimeIterationSolver:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             if not (np.array_equal(state, prepared.state) and np.array_equal(packed, prepared.packed)):
                 controls = np.clip(search.iterate.controls, parameters.inputs.lower, parameters.inputs.upper)
-                search = SqpSearch(self._tools, state, packed, parameters, controls)
+                self._tools.evaluation.set(state, packed)
+                start = Iterate(controls, self._tools.evaluation.cost(controls))
+                search = SqpSearch(self._tools, state, packed, parameters, start)
                 search.linearise(prepared.search.condensed)
             if not search.over:
                 search.advance()

@@ -11,7 +11,7 @@ from .evaluation import Evaluation
 from .globalisation import Iterate, line_search
 from .linearisation import Lineariser
 from .optimal_control_problem import OptimalControlProblem
-from .optimality import SOLVED, cost_scale, residual, status_of
+from .optimality import cost_scale, residual, status_of
 from .parameters import InputParameters, MpcParameters
 from .qp import QpSolver, QpStatus
 from .solution import Solution, Status, read_only
@@ -19,8 +19,6 @@ from .step_model import AT_BOUND, Condensed, Multipliers, Step, StepModel
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-_ENOUGH = 0.5 * SOLVED  # In tolerances: a search ends a little inside of what counts as optimal.
 
 
 class SqpTools:
@@ -34,6 +32,7 @@ class SqpTools:
         self.qp_solver = qp_solver
         self.tolerance = tolerance
         self.hard_clearance = hard_clearance
+        self.slots = problem.layout.slots
 
 
 class SqpSearch:
@@ -47,36 +46,35 @@ class SqpSearch:
     """
 
     def __init__(
-        self, tools: SqpTools, state: Vector, packed: Vector, parameters: MpcParameters, controls: Vector
+        self, tools: SqpTools, state: Vector, packed: Vector, parameters: MpcParameters, iterate: Iterate
     ) -> None:
-        """Begins at `controls`, shape (N, 3), with z_0 and p."""
-        self._tools, self._packed, self._parameters = tools, packed, parameters
+        """Begins at `iterate` with z_0 and p, for which the tools' evaluation has been set."""
+        self._tools, self._state, self._packed, self._parameters = tools, state, packed, parameters
         self._scale = cost_scale(parameters)
+        self._gradient = np.full_like(iterate.controls, np.nan)  # Of the Lagrangian, the box left out.
+        self.residual = np.nan
         self._wall_price = parameters.constraints.obstacle_penalty
         self._multipliers: Multipliers | None = None
         self._walls: Mask | None = None  # Where hard clearance is a constraint; known once margins are.
-        self._wall_force = np.zeros_like(controls)
+        self._wall_force = np.zeros_like(iterate.controls)
         self._stuck = False
-        self.evaluations = 0
-        tools.evaluation.set(state, packed)
-        self.iterate = self._evaluate(controls)
+        self.evaluations = 1
+        self.iterate = iterate
 
     @property
     def over(self) -> bool:
         """Whether another iteration is of no use."""
-        return self._stuck or not self.iterate.finite or self.residual <= _ENOUGH * self._tools.tolerance
+        return self._stuck or not self.iterate.finite or self.residual <= self._tools.tolerance
 
     def linearise(self, condensed: Condensed | None = None) -> None:
         """Makes the model at the present iterate; its condensed part may be that of a trajectory nearby."""
-        controls = self.iterate.controls
-        states, margins, *_ = self._tools.evaluation.trajectory(controls)
-        linearisation = self._tools.lineariser(states, controls, self._packed)
+        linearisation = self._tools.lineariser(self._state, self.iterate.controls, self._packed)
         self.condensed = condensed or Condensed(linearisation)
-        self._model = StepModel(linearisation, self.condensed, self.iterate.gradient)
+        self._model = StepModel(linearisation, self.condensed)
         if self._walls is None:
-            self._walls = self._feasible_walls(margins)
+            self._walls = self._feasible_walls(linearisation.margins(self._tools.slots))
         self._curvature = self._model.curvature()
-        self._assess()
+        self._assess(self._model.gradient())
 
     def advance(self) -> None:
         """One iteration with the present model: a quadratic program, and a line search along its solution."""
@@ -96,7 +94,8 @@ class SqpSearch:
             self._stuck = True
             return
         self.iterate = found
-        self._assess()
+        assert found.gradient is not None
+        self._assess(found.gradient)
 
     def solution(self) -> Solution:
         """What has been found so far, as solvers return it."""
@@ -110,7 +109,7 @@ class SqpSearch:
             states=read_only(states),
             cost=iterate.cost,
             iterations=self.evaluations,
-            control_duals=read_only(_box_duals(iterate.controls, iterate.gradient + self._wall_force, inputs)),
+            control_duals=read_only(_box_duals(iterate.controls, self._gradient, inputs)),
             obstacle_duals=read_only(obstacle_duals),
             limit_duals=read_only(limit_duals),
             obstacle_margins=read_only(margins),
@@ -148,11 +147,11 @@ class SqpSearch:
             walls[stages, nearest] = margins[stages, nearest] >= 0.0
         return walls
 
-    def _assess(self) -> None:
-        gradient = self._scale * (self.iterate.gradient + self._wall_force)
-        self.residual = residual(
-            self.iterate.controls, gradient, self._scale * self._curvature, self._parameters.inputs
-        )
+    def _assess(self, gradient: Vector) -> None:
+        """Measures how far the iterate is from optimal by the gradient of the cost there."""
+        controls, scale = self.iterate.controls, self._scale
+        self._gradient = gradient.reshape(controls.shape) + self._wall_force
+        self.residual = residual(controls, scale * self._gradient, scale * self._curvature, self._parameters.inputs)
 
 
 def _box_duals(controls: Vector, gradient: Vector, inputs: InputParameters) -> Vector:

@@ -19,7 +19,7 @@ def case(problem, parameters_toward, seed=0, **constraints):
 
 
 def linearise(problem, parameters, state, controls, packed):
-    return mut.Lineariser(problem)(problem.rollout(state, controls, parameters), controls, packed)
+    return mut.Lineariser(problem)(state, controls, packed)
 
 
 def penalties(linearisation):
@@ -28,6 +28,12 @@ def penalties(linearisation):
         for prices, excesses in zip(linearisation.prices, linearisation.excesses, strict=True)
         for price, excess, width in zip(prices, excesses, linearisation.widths, strict=True)
     )
+
+
+def test_it_follows_the_rollout(problem, parameters_toward):
+    parameters, state, controls, packed = case(problem, parameters_toward)
+    found = linearise(problem, parameters, state, controls, packed)
+    np.testing.assert_allclose(found.states, problem.rollout(state, controls, parameters), atol=1e-12)
 
 
 def test_the_stage_jacobians_are_those_of_the_model(problem, parameters_toward):
@@ -46,15 +52,16 @@ def test_the_stage_jacobians_are_those_of_the_model(problem, parameters_toward):
 
 
 def test_the_slopes_of_the_rows_are_those_of_their_excesses(problem, parameters_toward):
-    parameters, state, controls, packed = case(problem, parameters_toward)
-    lineariser, states = mut.Lineariser(problem), problem.rollout(state, controls, parameters)
-    found = lineariser(states, controls, packed)
-    near = found.excesses > -50.0  # Empty slots hold a point ten kilometres away, where differences drown.
+    _, state, controls, packed = case(problem, parameters_toward)
+    lineariser = mut.Lineariser(problem)
+    found = lineariser(state, controls, packed)
+    rows = mut._rows(problem, 7)
+    parts = (found.states[8], controls[7], packed)
+    near = found.excesses[7] > -50.0  # Empty slots hold a point ten kilometres away, where differences drown.
+    np.testing.assert_allclose(rows(*parts)[0].full()[:, 0], found.excesses[7], atol=1e-12)
     for i in range(6):
-        offset = np.zeros_like(states)
-        offset[1:, i] = 1e-6
-        ahead, behind = (lineariser(states + s * offset, controls, packed).excesses for s in (1, -1))
-        np.testing.assert_allclose(found.slopes[:, :, i][near], ((ahead - behind) / 2e-6)[near], atol=1e-6)
+        ahead, behind = (rows(parts[0] + s * 1e-6 * np.eye(6)[i], *parts[1:])[0].full()[:, 0] for s in (1, -1))
+        np.testing.assert_allclose(found.slopes[7, near, i], ((ahead - behind) / 2e-6)[near], atol=1e-6)
 
 
 def test_cost_is_tracking_and_the_penalties_of_the_rows(problem, parameters_toward):

@@ -35,7 +35,9 @@ def test_each_benchmark_can_be_run_without_arguments(name):
 
 
 def test_an_unknown_benchmark_is_refused():
-    with pytest.raises(BadInput, match=r"bench: 'patience'; expected one of plant, mpc, plan"):
+    with pytest.raises(
+        BadInput, match=r"bench: 'patience'; expected one of plant, mpc, agreement, plan, sensitivities"
+    ):
         mut.run_benchmarks("patience")
 
 

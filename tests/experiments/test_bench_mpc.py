@@ -1,28 +1,20 @@
-import numpy as np
+import dataclasses
 
 import mala_drake.experiments.bench_mpc as mut
-from mala_drake.control import MakeSolver, OptimalControlProblem
-from mala_drake.ward.routes import RoutePlanner
-from mala_drake.ward.shapes import ShapeDistances
+from mala_drake.control import OptimalControlProblem
+from mala_drake.experiments.model_drives import course
 
 
-def test_the_course_fills_all_slots_and_its_route_does_not_know_the_bucket():
-    assert len((*mut.MAPPED, mut.UNMAPPED)) == OptimalControlProblem().layout.slots
-    route = RoutePlanner(mut.MAPPED).route(mut.START, mut.GOAL[:2])
-    along = np.vstack([np.linspace(a, b, 50) for a, b in zip(route.points[:-1], route.points[1:], strict=True)])
-    assert ShapeDistances([mut.UNMAPPED])(along).min() < 0.28 + 0.1
-
-
-def test_the_course_is_driven_to_its_end_without_contact():
-    problem = OptimalControlProblem()
-    run = mut.drive_course(problem, MakeSolver("snopt", problem), steps=80, seed=0)
-    assert run.failures == 0
-    assert run.min_clearance > 0.05
-    assert run.position_error < 0.15
-
-
-def test_the_benchmark_has_a_row_a_solver_with_its_times():
-    rows = mut.bench_mpc(("snopt",), steps=3, seeds=(0, 1))
-    assert [row["solver"] for row in rows] == ["snopt"]
-    assert rows[0]["solves"] == 6
-    assert 0 < rows[0]["median_ms"] <= rows[0]["p95_ms"] <= rows[0]["max_ms"]
+def test_a_row_a_solver_with_its_times_by_phase_and_its_cost_against_snopts():
+    short = dataclasses.replace(course(), steps=4)
+    rows = mut.bench_drives(OptimalControlProblem(), "short", [short], (0, 1), iterations=(1, 20))
+    assert [row["solver"] for row in rows] == ["snopt", "rti, 1", "rti, 20"]
+    assert {row["solves"] for row in rows} == {8}
+    for row in rows:
+        assert 0 < row["median_ms"] <= row["p95_ms"] <= row["max_ms"]
+        assert row["failures"] == 0
+    assert rows[0]["cost_ratio"] == 1.0
+    assert rows[0]["preparation_ms"] == 0.0
+    assert rows[1]["preparation_ms"] > 0.0
+    assert rows[1]["feedback_ms"] < rows[1]["median_ms"]
+    assert rows[2]["not_converged"] == 0
