@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mala_drake.learning.convergence import CONVERGED_DISTANCE
+from mala_drake.reporting.bound_results import error_over_bound, rating_noise
 from mala_drake.reporting.figures.style import readable_variant, words
 from mala_drake.reporting.paper_results import PAPER_RESULTS
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
@@ -123,7 +124,9 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
         )
         finals = _range([each.final_distance.median for each in figures], 3)
         learner = words(results.learner(condition)).capitalize()
-        sentences.append(f"{learner}: {told} and a final distance of {finals} (medians by patient).")
+        text = f"{learner}: {told} and a final distance of {finals} (medians by patient)"
+        ratio = _final_ratio(results, condition)
+        sentences.append(text + ("." if ratio is None else f"; final error {ratio:.2f} times the information bound."))
     reported = [PAPER_RESULTS[profile] for profile in results.profiles if profile in PAPER_RESULTS]
     if reported:
         counted = _range([each.rated_episodes[0] for each in reported], 1)
@@ -132,6 +135,15 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
             f"The paper reports convergence after {counted} rated episodes and final distances of {finals}."
         )
     return tuple(sentences)
+
+
+def _final_ratio(results: Results, condition: str) -> float | None:
+    """Error over bound at the end; None where it cannot be told."""
+    noise = rating_noise(results)
+    if noise is None:
+        return None
+    ratios = error_over_bound(results, condition, noise)
+    return float(ratios[-1]) if ratios.size and math.isfinite(ratios[-1]) else None
 
 
 def _range(values: Sequence[float], digits: int) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_record import check_writable
+from mala_drake.reporting.figures.bound import bound_picture
 from mala_drake.reporting.figures.conditions import condition_picture
 from mala_drake.reporting.figures.distances import distance_pictures
 from mala_drake.reporting.figures.features import feature_picture
@@ -66,6 +67,7 @@ def _sections(results: Results, ward: Ward) -> Iterator[Section]:
             convergence_table(results),
             *trajectory_picture(results),
             *final_weights_picture(results),
+            *bound_picture(results),
         ),
     )
     yield Section(

@@ -87,7 +87,7 @@ def _section(section: Section, counter: _Counter) -> str:
 def _picture(picture: Picture, counter: _Counter) -> str:
     drawing = inline_svg(picture.svg(), name=picture.name, title=f"{picture.title}. {picture.caption}")
     words = f"<b>{counter.next('Figure')}. {html.escape(picture.title)}.</b> {html.escape(picture.caption)}"
-    return f"<figure>\n{drawing}\n<figcaption>{words}</figcaption>\n</figure>"
+    return f'<figure>\n<div class="drawing">{drawing}</div>\n<figcaption>{words}</figcaption>\n</figure>'
 
 
 def _table(table: Table, counter: _Counter) -> str:

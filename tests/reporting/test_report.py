@@ -56,7 +56,7 @@ def read(folder):
 @pytest.fixture(scope="module")
 def experiment(tmp_path_factory, simulate_results):
     folder = tmp_path_factory.mktemp("experiment")
-    simulate_results(folder, episodes=4, tasks=("medication", "meal"))
+    simulate_results(folder, profiles=("speed_oriented", "safety_first"), episodes=4, tasks=("medication", "meal"))
     simulate_results(folder, profiles=("speed_oriented",), episodes=2, condition="projected_gradient", step_size=0.03)
     return folder
 

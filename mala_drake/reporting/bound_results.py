@@ -1,0 +1,62 @@
+"""Errors of the learned weights in units of what could be known: the information bound of the episodes really rated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mala_drake.learning.information_bound import efficiency, weight_bound
+from mala_drake.preferences import CRITERIA
+from mala_drake.reporting.results import Results, Run
+
+
+def rating_noise(results: Results) -> float | None:
+    """The standard deviation of a rating, as the folder tells it; None where it does not, or there is no noise."""
+    patient = results.scenario.get("patient", {})
+    noise = patient.get("noise") if isinstance(patient, dict) else None
+    usable = isinstance(noise, (int, float)) and math.isfinite(noise) and noise > 0
+    return float(noise) if usable and noise is not None else None
+
+
+def bounds_of(run: Run, noise: float) -> NDArray[np.float64]:
+    """The bound of each weight after each episode, shape (episodes, 5), from the features that had been rated by then.
+
+    Infinite as long as they do not tell all of the weights.
+    """
+    rated = np.array(
+        [
+            [
+                math.nan if rating is None else record.features[criterion]
+                for criterion, rating in zip(CRITERIA, record.ratings or [None] * len(CRITERIA), strict=True)
+            ]
+            for record in run.episodes
+        ]
+    )
+    return np.array([weight_bound(rated[: n + 1], noise) for n in range(len(rated))])
+
+
+def errors_of(run: Run, true_weights: Sequence[float]) -> NDArray[np.float64]:
+    """Learned minus true weights after each episode, shape (episodes, 5)."""
+    return np.array([record.weights_after for record in run.episodes]) - np.asarray(true_weights, dtype=float)
+
+
+def error_over_bound(results: Results, condition: str, noise: float) -> NDArray[np.float64]:
+    """Root mean square of error over bound after each episode, over runs and weights; NaN before the bound is finite.
+
+    Only episodes that all runs have count, and only patients whose wishes are known.
+    """
+    known = [(run, true) for run in results.of(condition) if (true := results.true_weights(run.profile)) is not None]
+    if not known:
+        return np.empty(0)
+    length = min(len(run.episodes) for run, _ in known)
+    bounds = np.array([bounds_of(run, noise)[:length] for run, _ in known])
+    errors = np.array([errors_of(run, true)[:length] for run, true in known])
+    return np.array(
+        [
+            efficiency(list(errors[:, n]), list(bounds[:, n])) if np.isfinite(bounds[:, n]).all() else math.nan
+            for n in range(length)
+        ]
+    )

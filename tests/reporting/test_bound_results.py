@@ -1,0 +1,78 @@
+"""Errors in units of the information bound, against Monte Carlo and by hand."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mala_drake.patient.profiles import PROFILES
+from mala_drake.reporting import bound_results as mut
+from mala_drake.reporting.results import load_results
+
+NOISE = 0.1
+TRUE = np.array(PROFILES["speed_oriented"])
+
+
+def write_summary(folder, patient):
+    (folder / "summary.json").write_text(json.dumps({"scenario": {"patient": patient}}))
+
+
+def least_squares(folder, simulate_results):
+    """Runs whose weights are the constrained least squares estimate: the efficient one, which meets the bound."""
+    seen = {}
+
+    def estimate(record):
+        history = seen.setdefault(record.seed, [])
+        history.append((list(record.features.values()), record.ratings))
+        features, ratings = (np.array(each, dtype=float) for each in zip(*history, strict=True))
+        information, evidence = 16.0 * (features**2).sum(axis=0), (4.0 * features * (5.0 - ratings)).sum(axis=0)
+        system = np.block([[np.diag(information), np.ones((5, 1))], [np.ones((1, 5)), np.zeros((1, 1))]])
+        return replace(record, weights_after=list(np.linalg.solve(system, [*evidence, 1.0])[:5]))
+
+    simulate_results(folder, profiles=("speed_oriented",), seeds=range(150), episodes=3, change=estimate)
+    write_summary(folder, {"noise": NOISE})
+    return load_results(folder)
+
+
+def test_an_efficient_estimate_is_at_the_bound(tmp_path, simulate_results):
+    ratios = mut.error_over_bound(least_squares(tmp_path, simulate_results), "", NOISE)
+    np.testing.assert_allclose(ratios, 1.0, atol=0.08)
+
+
+def test_what_was_not_rated_tells_nothing(tmp_path, simulate_results):
+    def silent(record):
+        return replace(record, ratings=[None] * 5) if record.episode < 2 else record
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=4, change=silent)
+    results = load_results(tmp_path)
+    bounds = mut.bounds_of(results.runs[0], NOISE)
+    assert np.isinf(bounds[:2]).all()
+    assert np.isfinite(bounds[2:]).all()
+    assert np.all(bounds[3] < bounds[2])
+    assert list(np.isfinite(mut.error_over_bound(results, "", NOISE))) == [False, False, True, True]
+
+
+def test_errors_are_learned_minus_true(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2)
+    (run,) = load_results(tmp_path).runs
+    np.testing.assert_allclose(mut.errors_of(run, TRUE)[1] + TRUE, run.final.weights_after)
+
+
+@pytest.mark.parametrize(
+    ("patient", "noise"),
+    [
+        ({"noise": 0.2}, 0.2),
+        ({"noise": 1}, 1.0),
+        ({"noise": 0.0}, None),
+        ({"noise": None}, None),
+        ({}, None),
+        (3, None),
+    ],
+)
+def test_the_noise_is_what_the_folder_tells(tmp_path, simulate_results, patient, noise):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=1)
+    write_summary(tmp_path, patient)
+    assert mut.rating_noise(load_results(tmp_path)) == noise
