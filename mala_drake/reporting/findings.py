@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 from mala_drake.learning.convergence import CONVERGED_DISTANCE
 from mala_drake.reporting.bound_results import error_over_bound, rating_noise
-from mala_drake.reporting.figures.style import readable_variant, words
 from mala_drake.reporting.paper_results import PAPER_RESULTS
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import quantile
 from mala_drake.reporting.result_tables import compared_conditions, number, percent
 from mala_drake.reporting.results import Results, Run
+from mala_drake.reporting.wording import readable_variant, words
 
 _MOST_NAMED = 8  # Places of a failure that are named one by one.
 

@@ -15,14 +15,15 @@ from mala_drake.reporting.figures.floor_plan import floor_plan_pictures
 from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.plans import meal_picture, variant_picture
 from mala_drake.reporting.figures.prediction import prediction_picture
-from mala_drake.reporting.figures.style import styled, words
+from mala_drake.reporting.figures.style import styled
 from mala_drake.reporting.figures.task_graphs import task_graph_pictures
 from mala_drake.reporting.figures.weights import final_weights_picture, trajectory_picture
 from mala_drake.reporting.findings import headline, learning_sentences, plan_sentences, problems
 from mala_drake.reporting.report_page import Section, report_page
-from mala_drake.reporting.result_tables import condition_table, convergence_table, timing_table
+from mala_drake.reporting.result_tables import condition_table, convergence_table, execution_table, timing_table
 from mala_drake.reporting.results import Results, load_results
 from mala_drake.reporting.table import Table
+from mala_drake.reporting.wording import words
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 PAGE = "report.html"
@@ -87,8 +88,7 @@ def _sections(results: Results, ward: Ward) -> Iterator[Section]:
     if table:
         yield Section("conditions", "Conditions", (), (*condition_picture(results), table))
     times = timing_table(results)
-    if times:
-        yield Section("times", "Times", (), (times,))
+    yield Section("execution", "Execution", (), (execution_table(results), *([times] if times else [])))
 
 
 def _lead(results: Results) -> str:

@@ -6,12 +6,12 @@ import math
 from collections.abc import Iterable, Sequence
 
 from mala_drake.learning.convergence import CONVERGED_DISTANCE
-from mala_drake.reporting.figures.style import title_of, words
 from mala_drake.reporting.paper_results import PAPER_RESULTS, RUNS, PaperResults
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import Spread, quantile, spread
 from mala_drake.reporting.results import Results
 from mala_drake.reporting.table import Table
+from mala_drake.reporting.wording import title_of, words
 
 NONE = "–"
 """What a cell says when there is no figure."""
@@ -159,6 +159,48 @@ def condition_table(results: Results) -> Table | None:
         "weights on the measured features, of an average episode: the median over patients of the median over seeds."
     )
     return Table("conditions", caption, headings, (tuple(rows[:1]), tuple(rows[1:])))
+
+
+def execution_table(results: Results) -> Table:
+    """How each condition was driven: the worst of all its episodes."""
+    headings = (
+        "condition",
+        "episodes",
+        "least clearance, m",
+        "worst stop, m",
+        "worst stop, rad",
+        "worst stop, m/s",
+        "MPC solves",
+        "failed",
+        "mismatches",
+        "hours simulated",
+    )
+    rows = []
+    for condition in results.conditions:
+        records = [record for run in results.of(condition) for record in run.episodes]
+        rows.append(
+            (
+                words(results.learner(condition)),
+                str(len(records)),
+                number(quantile((record.min_clearance_m for record in records), 0.0), 3),
+                number(_worst(record.terminal_errors_m for record in records), 3),
+                number(_worst(record.terminal_yaw_errors_rad for record in records), 3),
+                number(_worst(record.terminal_speeds_m_s for record in records), 3),
+                str(sum(record.mpc_solves for record in records)),
+                str(sum(record.mpc_failures for record in records)),
+                str(sum(record.mismatches for record in records)),
+                f"{sum(record.sim_time_s for record in records) / 3600:.1f}",
+            )
+        )
+    caption = (
+        "Clearance of the robot's body to anything solid, taken at every plant step; the greatest errors with which a "
+        "leg ended; solves of the MPC; actions after which the symbolic state was not the expected one."
+    )
+    return Table("execution", caption, headings, (tuple(rows),))
+
+
+def _worst(values: Iterable[Sequence[float]]) -> float:
+    return quantile((abs(value) for of_episode in values for value in of_episode), 1.0)
 
 
 def timing_table(results: Results) -> Table | None:

@@ -14,6 +14,7 @@ from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.preferences import CRITERIA
+from mala_drake.reporting.wording import words
 
 MAIN = ""
 """The condition of the runs that lie in no condition's folder."""
@@ -197,29 +198,31 @@ def _missing(runs: list[Run]) -> Iterator[str]:
     """What is less than it should be, judged by the other runs of the same condition."""
     for condition in dict.fromkeys(run.condition for run in runs):
         of_condition = [run for run in runs if run.condition == condition]
-        within = f" under {condition}" if condition else ""
+        within = f" under {words(condition)}" if condition else ""
         seeds = {run.seed for run in of_condition}
         longest = max(len(run.episodes) for run in of_condition)
         for profile in dict.fromkeys(run.profile for run in of_condition):
             absent = sorted(seeds - {run.seed for run in of_condition if run.profile == profile})
             if absent:
                 numbers = ", ".join(map(str, absent))
-                yield f"No run of {profile} with seed {numbers}{within}, which other profiles have."
+                yield f"No run of {words(profile)} with seed {numbers}{within}, which other profiles have."
         for run in of_condition:
             if len(run.episodes) < longest:
                 done = f"{len(run.episodes)} of {longest} episodes"
-                yield f"The run of {run.profile}, seed {run.seed}{within}, has only {done}."
+                yield f"The run of {words(run.profile)}, seed {run.seed}{within}, has only {done}."
 
 
 def _scenario(folder: Path, notes: list[str]) -> Mapping[str, Any]:
+    """What was run, as the summary of the folder tells it, or else that of the first run with one."""
     path = folder / _SUMMARY_FILE
     if not path.is_file():
         notes.append(f"There is no {_SUMMARY_FILE}: the runs may not have come to their end.")
-        return {}
-    try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        notes.append(f"{_SUMMARY_FILE} cannot be read and is left out.")
-        return {}
-    scenario = summary.get("scenario", {}) if isinstance(summary, dict) else {}
-    return scenario if isinstance(scenario, dict) else {}
+    for candidate in (path, *sorted(folder.rglob(_SUMMARY_FILE))):
+        try:
+            summary = json.loads(candidate.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        scenario = summary.get("scenario") if isinstance(summary, dict) else None
+        if isinstance(scenario, dict):
+            return scenario
+    return {}

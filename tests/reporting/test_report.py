@@ -80,7 +80,7 @@ def test_every_picture_shows_something(written):
 
 def test_tables_are_written_for_readme_and_paper(written):
     assert {path.name for path in written if path.suffix in (".md", ".tex")} == {
-        f"{name}.{suffix}" for name in ("convergence", "conditions", "timing") for suffix in ("md", "tex")
+        f"{name}.{suffix}" for name in ("convergence", "conditions", "execution", "timing") for suffix in ("md", "tex")
     }
 
 

@@ -97,3 +97,23 @@ def test_times_are_medians_over_episodes(tmp_path, simulate_results):
 def test_times_that_are_not_told_make_no_table(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",), change=lambda record: replace(record, timing={}))
     assert mut.timing_table(load_results(tmp_path)) is None
+
+
+def test_the_worst_of_all_episodes_is_told(tmp_path, simulate_results):
+    def drive(record):
+        if record.episode == 1:
+            return replace(
+                record,
+                min_clearance_m=0.1,
+                terminal_errors_m=[0.01, 0.3],
+                terminal_yaw_errors_rad=[-0.2],
+                terminal_speeds_m_s=[],
+                mpc_failures=2,
+                mismatches=1,
+                sim_time_s=1800.0,
+            )
+        return replace(record, sim_time_s=1800.0, min_clearance_m=math.inf, terminal_speeds_m_s=[0.04])
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2, change=drive)
+    ((row,),) = mut.execution_table(load_results(tmp_path)).groups
+    assert row == ("main", "2", "0.100", "0.300", "0.200", "0.040", "500", "2", "1", "1.0")

@@ -96,6 +96,15 @@ def test_a_summary_that_tells_nothing_stops_nothing(tmp_path, simulate_results, 
     assert results.true_weights("custom") is None
 
 
+def test_without_a_summary_that_of_a_run_tells_what_was_run(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0, 1))
+    scenario = {"learner": {"name": "bandit"}}
+    (tmp_path / "speed_oriented" / "seed_1" / "summary.json").write_text(json.dumps({"scenario": scenario}))
+    results = mut.load_results(tmp_path)
+    assert results.learner("") == "bandit"
+    assert any("no summary.json" in note for note in results.notes)
+
+
 def test_a_torn_last_line_is_left_out_and_told(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=3)
     path = tmp_path / EPISODES
@@ -115,8 +124,8 @@ def test_what_is_missing_is_told(tmp_path, simulate_results):
     notes = "\n".join(mut.load_results(tmp_path).notes)
     assert "energy_conscious/seed_0/episodes.jsonl holds no episode." in notes
     assert "odd/episodes.jsonl is left out" in notes
-    assert "No run of safety_first with seed 0" in notes
-    assert "safety_first, seed 1, has only 2 of 3 episodes" in notes
+    assert "No run of safety first with seed 0" in notes
+    assert "safety first, seed 1, has only 2 of 3 episodes" in notes
     assert "no summary.json" in notes
 
 

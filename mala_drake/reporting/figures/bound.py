@@ -10,9 +10,10 @@ import numpy as np
 from mala_drake.reporting.bound_results import bounds_of, error_over_bound, rating_noise
 from mala_drake.reporting.figures.curves import episode_locator, label_ends
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import INK, MUTED, PAPER, WIDTH, new_figure, profile_color, words
+from mala_drake.reporting.figures.style import INK, MUTED, PAPER, WIDTH, new_figure, profile_color
 from mala_drake.reporting.result_tables import compared_conditions
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

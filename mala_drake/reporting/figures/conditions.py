@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import INK, MUTED, WIDTH, new_figure, profile_color, words
+from mala_drake.reporting.figures.style import INK, MUTED, WIDTH, new_figure, profile_color
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import Spread
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

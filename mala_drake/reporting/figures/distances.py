@@ -10,19 +10,11 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from mala_drake.learning.convergence import CONVERGED_DISTANCE, preference_distance
 from mala_drake.reporting.figures.curves import aligned, draw_band, episode_locator, label_ends
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import (
-    INK,
-    MUTED,
-    WIDTH,
-    grid_of_axes,
-    new_figure,
-    profile_color,
-    title_of,
-    words,
-)
+from mala_drake.reporting.figures.style import INK, MUTED, WIDTH, grid_of_axes, new_figure, profile_color
 from mala_drake.reporting.quantiles import quantile
 from mala_drake.reporting.result_tables import compared_conditions
 from mala_drake.reporting.results import Results, Run
+from mala_drake.reporting.wording import title_of, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

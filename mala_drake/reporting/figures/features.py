@@ -9,17 +9,10 @@ import numpy as np
 
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import (
-    CRITERION_COLORS,
-    PAPER,
-    WIDTH,
-    new_figure,
-    profile_color,
-    title_of,
-    words,
-)
+from mala_drake.reporting.figures.style import CRITERION_COLORS, PAPER, WIDTH, new_figure, profile_color
 from mala_drake.reporting.quantiles import spread
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import title_of, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -23,10 +23,9 @@ from mala_drake.reporting.figures.style import (
     WIDTH,
     new_figure,
     profile_color,
-    title_of,
-    words,
 )
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import title_of, words
 from mala_drake.ward.legs import leg_planner
 from mala_drake.ward.shapes import outline
 from mala_drake.ward.ward_map import Furniture, Place, Ward
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
-_MARGIN = 2.5  # Metres shown round the outermost places.
+_MARGIN = 3.0  # Metres shown round the legs.
 _LABEL_SIZE = 6.0
 _FAR = 1.8  # Metres from a place beyond which its name is joined to it by a line.
 _ALWAYS = 2.6  # Line width of a leg of every episode, points.
@@ -57,14 +56,18 @@ def _draw_plans(ward: Ward, shown: Mapping[str, ExecutedLegs]) -> Figure:
     """The map with names on the left, the panels beside it, and what the lines mean in the cell that is left."""
     rows = 2 if len(shown) > 1 else 1
     columns = -(-(len(shown) + 1) // rows)
-    figure = new_figure(WIDTH, 4.25)
-    grid = figure.add_gridspec(rows, columns + 1, width_ratios=[2.2 if rows == 2 else 1.0, *[1.0] * columns])
+    ratios = [2.2 if rows == 2 else 1.0, *[1.0] * columns]
+    legs = sorted({leg for each in shown.values() for leg in each.counts})
+    left, bottom, right, top = view = _view(ward, legs)
+    height = WIDTH * ratios[0] / sum(ratios) * (top - bottom) / (right - left)
+    figure = new_figure(WIDTH, height + 0.25)
+    grid = figure.add_gridspec(rows, columns + 1, width_ratios=ratios)
     key = figure.add_subplot(grid[:, 0])
     cells = [figure.add_subplot(grid[i // columns, 1 + i % columns]) for i in range(rows * columns)]
-    visited = {name for each in shown.values() for leg in each.counts for name in leg}
+    visited = {name for leg in legs for name in leg}
     places = [place for place in ward.places if place.name in visited]
     for axes in (key, *cells[: len(shown)]):
-        _draw_ward(axes, ward)
+        _draw_ward(axes, ward, view)
         _mark(axes, places)
     for axes, (profile, each) in zip(cells, shown.items(), strict=False):
         axes.set_title(title_of(profile), color=profile_color(profile), fontsize=7.5)
@@ -85,14 +88,14 @@ def _explain(axes: Axes) -> None:
     axes.set_axis_off()
     axes.set_xlim(0, 1)
     axes.set_ylim(0, 1)
-    axes.text(0, 0.92, "legs driven in", fontsize=6.5, color=MUTED)
+    axes.text(0, 0.95, "legs driven in", fontsize=6.5, color=MUTED, va="center")
     for i, share in enumerate((1.0, 0.5, 0.1)):
-        y = 0.83 - 0.09 * i
+        y = 0.83 - 0.12 * i
         axes.plot([0, 0.3], [y, y], color=INK, **_line_of(share))
         axes.text(0.38, y, f"{100 * share:.0f} % of episodes", fontsize=6.5, va="center")
-    axes.text(0, 0.46, "congestion level", fontsize=6.5, color=MUTED)
+    axes.text(0, 0.44, "congestion level", fontsize=6.5, color=MUTED, va="center")
     for i, level in enumerate((0.1, 0.3, 0.8)):
-        y = 0.37 - 0.09 * i
+        y = 0.32 - 0.12 * i
         axes.add_patch(Rectangle((0, y - 0.035), 0.3, 0.07, linewidth=0, color=BUSY, alpha=_zone_shade(level)))
         axes.text(0.38, y, f"{level:g}", fontsize=6.5, va="center")
 
@@ -108,12 +111,21 @@ def _caption(left_out: int) -> str:
     return text
 
 
-def _draw_ward(axes: Axes, ward: Ward) -> None:
-    """The floor with its zones, and everything solid."""
-    xs, ys = [place.x for place in ward.places], [place.y for place in ward.places]
+def _view(ward: Ward, legs: Sequence[tuple[str, str]]) -> Box:
+    """The part of the ward that holds all legs."""
+    routes = [route.points for leg in legs if (route := leg_planner(ward).between(*leg)) is not None]
+    ends = np.array([(ward.place[name].x, ward.place[name].y) for leg in legs for name in leg])
+    points = np.concatenate([ends, *routes])
     outermost = ward.half_extent + ward.wall_half_thickness
-    axes.set_xlim(max(min(xs) - _MARGIN, -outermost), min(max(xs) + _MARGIN, outermost))
-    axes.set_ylim(max(min(ys) - _MARGIN, -outermost), min(max(ys) + _MARGIN, outermost))
+    (left, bottom), (right, top) = points.min(axis=0) - _MARGIN, points.max(axis=0) + _MARGIN
+    return max(left, -outermost), max(bottom, -outermost), min(right, outermost), min(top, outermost)
+
+
+def _draw_ward(axes: Axes, ward: Ward, view: Box) -> None:
+    """The floor with its zones, and everything solid."""
+    left, bottom, right, top = view
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
     axes.set_aspect("equal")
     axes.set_facecolor(FLOOR)
     axes.grid(visible=False)
@@ -161,13 +173,16 @@ def _zone_shade(level: float) -> float:
 
 
 def _name_zones(axes: Axes, ward: Ward) -> list[Box]:
-    """Writes the level of each zone into a corner of it; returns where."""
+    """Writes the level of each zone into the lower right corner of what is seen of it; returns where."""
     boxes = []
     for zone in ward.zones:
-        corners = np.array(zone.polygon)
+        x, y = max(x for x, _ in zone.polygon), min(y for _, y in zone.polygon)
+        x, y = min(x, axes.get_xlim()[1]) - 0.3, max(y, axes.get_ylim()[0]) + 0.3
+        if not shapely.Polygon(zone.polygon).contains(shapely.Point(x, y)):
+            continue
         text = axes.text(
-            corners[:, 0].max() - 0.3,
-            corners[:, 1].min() + 0.3,
+            x,
+            y,
             f"{zone.level:g}",
             ha="right",
             va="bottom",

@@ -7,19 +7,10 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import (
-    INK,
-    MUTED,
-    PAPER,
-    WIDTH,
-    ink_on,
-    new_figure,
-    profile_color,
-    readable_variant,
-    words,
-)
+from mala_drake.reporting.figures.style import INK, MUTED, PAPER, WIDTH, ink_on, new_figure, profile_color
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import readable_variant, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

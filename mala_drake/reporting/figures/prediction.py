@@ -10,9 +10,10 @@ from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.figures.curves import aligned, draw_band, episode_locator, label_ends
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import CRITERION_COLORS, INK, WIDTH, grid_of_axes, new_figure, title_of
+from mala_drake.reporting.figures.style import CRITERION_COLORS, INK, WIDTH, grid_of_axes, new_figure
 from mala_drake.reporting.quantiles import quantile
 from mala_drake.reporting.results import Results
+from mala_drake.reporting.wording import title_of
 
 
 def prediction_error(record: EpisodeRecord, criterion: str) -> float:

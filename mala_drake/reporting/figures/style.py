@@ -113,23 +113,6 @@ def ink_on(color: str) -> str:
     return "#000000" if (luminance + 0.05) ** 2 > 1.05 * 0.05 else "#ffffff"
 
 
-def words(name: str) -> str:
-    """A name for people: `speed_oriented` is `speed oriented`."""
-    return name.replace("_", " ").replace("-", " ")
-
-
-def readable_variant(variant: str) -> str:
-    """A plan variant for people: `north/A/med-supp/left` is `north, A, medicine first, left`."""
-    orders = {"med-supp": "medicine first", "supp-med": "supplement first"}
-    return ", ".join(orders.get(part, words(part)) for part in variant.split("/"))
-
-
-def title_of(name: str) -> str:
-    """A name as a title: `speed_oriented` is `Speed oriented`."""
-    text = words(name)
-    return text[:1].upper() + text[1:]
-
-
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure of this size in inches, laid out by matplotlib's constrained layout."""
     from matplotlib.figure import Figure

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from mala_drake.planning.care_tasks import TASK_NAMES, CareTask
 from mala_drake.planning.task import PlanningTask
 from mala_drake.reporting.figures.picture import Picture
-from mala_drake.reporting.figures.style import FLOOR, INK, MUTED, PAPER, PLACE_COLORS, WIDTH, new_figure, words
+from mala_drake.reporting.figures.style import FLOOR, INK, MUTED, PAPER, PLACE_COLORS, WIDTH, new_figure
 from mala_drake.reporting.figures.task_sketch import LABEL_SIZE, TYPE_SIZE, Arrow, Node, Sketch, sketch
 from mala_drake.reporting.figures.task_texts import TaskTexts
 from mala_drake.reporting.task_graph import TaskGraph, task_graph
+from mala_drake.reporting.wording import words
 from mala_drake.ward.ward_map import Ward
 
 if TYPE_CHECKING:

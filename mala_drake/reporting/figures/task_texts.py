@@ -7,8 +7,8 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Sequence
 
 from mala_drake.planning.syntax import Description, Fact
-from mala_drake.reporting.figures.style import words
 from mala_drake.reporting.task_graph import State
+from mala_drake.reporting.wording import words
 
 _LONGEST = 18  # Characters of a line.
 

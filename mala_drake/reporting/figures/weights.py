@@ -19,10 +19,10 @@ from mala_drake.reporting.figures.style import (
     grid_of_axes,
     new_figure,
     profile_color,
-    title_of,
 )
 from mala_drake.reporting.quantiles import quantile
 from mala_drake.reporting.results import Results, Run
+from mala_drake.reporting.wording import title_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,7 +42,8 @@ def trajectory_picture(results: Results) -> Iterator[Picture]:
         axes.yaxis.set_major_locator(MultipleLocator(0.2))
         axes.xaxis.set_major_locator(episode_locator())
         axes.set_xlim(0, max(len(run.episodes) for run in results.of(results.main, profile)))
-    all_axes[0].set_ylim(bottom=0.0)
+    highest = max((max(results.true_weights(profile) or (0.0,)) for profile in profiles), default=0.0)
+    all_axes[0].set_ylim(0.0, max(all_axes[0].get_ylim()[1], 1.05 * highest))
     figure.supxlabel("episodes", fontsize=7.5, color=MUTED)
     figure.supylabel("weight", fontsize=7.5, color=MUTED)
     figure.draw_without_rendering()
