@@ -1,14 +1,17 @@
 """Motion of the gripper's pads in the world, and what a force on them does to the robot.
 
-In plain numbers instead of Drake's multibody queries: the magnet needs a handful of vectors at each step of the plant,
-and this costs a tenth of evaluating the plant's kinematics through its output ports.
+In plain scalars, floats or CasADi symbols, instead of Drake's multibody queries: the magnet needs a handful of vectors
+at each step of the plant, and the compiled function costs a hundredth of evaluating the plant's kinematics through its
+output ports.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+from casadi import atan2, cos, sin
 
 from mala_drake.robot.arm_kinematics import LINK_LENGTH, PAD_OFFSETS, SHOULDER
 from mala_drake.robot.vectors import Vector, combined, cross, dot, minus, plus
@@ -28,12 +31,12 @@ class GripperMotion:
     bar: Vector  # Unit vector along the magnet bar, from pad 1 to pad 0.
 
     @property
-    def yaw(self) -> float:
+    def yaw(self) -> Any:
         """Heading of the gripper seen from above, rad."""
-        return math.atan2(-self.bar[0], self.bar[1])
+        return atan2(-self.bar[0], self.bar[1])
 
     @property
-    def yaw_rate(self) -> float:
+    def yaw_rate(self) -> Any:
         """How fast the gripper turns about the vertical, rad/s."""
         return self.base_omega[2] + self.rates[0]
 
@@ -48,7 +51,7 @@ class GripperMotion:
             velocity = combined(1.0, velocity, rate, cross(axis, minus(point, center)))
         return velocity
 
-    def generalized_force(self, point: Vector, torque: Vector, force: Vector) -> tuple[list[float], list[float]]:
+    def generalized_force(self, point: Vector, torque: Vector, force: Vector) -> tuple[list[Any], list[Any]]:
         """What a wrench on the gripper does to the robot, by the transpose of the gripper's Jacobian.
 
         Args:
@@ -67,9 +70,7 @@ class GripperMotion:
         return base, joints
 
 
-def gripper_motion(
-    base: Sequence[float], joint_positions: Sequence[float], joint_rates: Sequence[float]
-) -> GripperMotion:
+def gripper_motion(base: Sequence[Any], joint_positions: Sequence[Any], joint_rates: Sequence[Any]) -> GripperMotion:
     """The arm in the world, from the state of base and arm.
 
     Args:
@@ -84,14 +85,14 @@ def gripper_motion(
     left = (k * (x * y - w * z), 1.0 - k * (x * x + z * z), k * (y * z + w * x))
     up = cross(forward, left)
     yaw, pitch, bend = joint_positions
-    outward = combined(math.cos(yaw), forward, math.sin(yaw), left)
-    bar = combined(-math.sin(yaw), forward, math.cos(yaw), left)
+    outward = combined(cos(yaw), forward, sin(yaw), left)
+    bar = combined(-sin(yaw), forward, cos(yaw), left)
     position = (p_x, p_y, p_z)
     shoulder = plus(
         plus(position, combined(SHOULDER[0], forward, SHOULDER[1], left)), combined(SHOULDER[2], up, 0.0, up)
     )
-    upper_arm = combined(LINK_LENGTH * math.cos(pitch), outward, LINK_LENGTH * math.sin(pitch), up)
-    forearm = combined(LINK_LENGTH * math.cos(pitch + bend), outward, LINK_LENGTH * math.sin(pitch + bend), up)
+    upper_arm = combined(LINK_LENGTH * cos(pitch), outward, LINK_LENGTH * sin(pitch), up)
+    forearm = combined(LINK_LENGTH * cos(pitch + bend), outward, LINK_LENGTH * sin(pitch + bend), up)
     elbow = plus(shoulder, upper_arm)
     lifting = (-bar[0], -bar[1], -bar[2])
     return GripperMotion(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+from casadi import copysign, cos, fabs, fmax, fmin, sin, sqrt
 
 from mala_drake.robot.items import ITEM_INERTIA, ITEM_MASS
-from mala_drake.robot.vectors import Vector, combined, cross, dot, minus
+from mala_drake.robot.vectors import Vector, choose, combined, cross, dot, minus
 
 GRAVITY = 9.81
 """m/s^2, as in the plant."""
@@ -15,7 +17,7 @@ GRAVITY = 9.81
 Wrench = tuple[Vector, Vector]
 """A torque, N m, and a force, N, in the world frame."""
 
-_NOTHING: Wrench = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_NO_DISTANCE = 1e-9  # m, for which the spring's strength is no limit.
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +25,9 @@ class Place:
     """Where a level box is to be: its centre, m, and yaw, rad, and how that place moves, m/s and rad/s."""
 
     position: Vector
-    yaw: float
+    yaw: Any
     velocity: Vector = (0.0, 0.0, 0.0)
-    yaw_rate: float = 0.0
+    yaw_rate: Any = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,34 +45,40 @@ class MagnetLaw:
     frequency: float = 25.0  # omega, rad/s; explicit at the plant's step of 0.01 s that is well within stability.
     either_way_round: bool = True  # Whether half a turn about the vertical makes no difference.
 
-    def wrench(self, box: Sequence[float], place: Place) -> Wrench:
-        """The wrench on a box at its centre.
+    def wrench(self, box: Sequence[Any], place: Place) -> Wrench:
+        """The wrench on a box at its centre, of floats or of CasADi symbols.
 
         Args:
             box: quaternion (w, x, y, z), position, angular velocity, translational velocity; 13 numbers, SI units.
             place: where it is to be.
         """
         deviation = minus(place.position, (box[4], box[5], box[6]))
-        distance = math.sqrt(dot(deviation, deviation))
-        if not distance <= self.reach:  # Also when it is NaN.
-            return _NOTHING
-        stiffness = ITEM_MASS * self.frequency**2
-        if distance * stiffness > self.strength:
-            stiffness = self.strength / distance
+        distance = sqrt(dot(deviation, deviation))
+        within = distance <= self.reach  # Not when it is NaN.
+        stiffness = fmin(ITEM_MASS * self.frequency**2, self.strength / fmax(distance, _NO_DISTANCE))
         closing = minus(place.velocity, (box[10], box[11], box[12]))
         force = combined(stiffness, deviation, 2.0 * ITEM_MASS * self.frequency, closing)
         turning = minus((0.0, 0.0, place.yaw_rate), (box[7], box[8], box[9]))
         rotation = self._rotation((box[0], box[1], box[2], box[3]), place.yaw)
         damping = 2.0 * ITEM_INERTIA * self.frequency
         torque = combined(ITEM_INERTIA * self.frequency**2, rotation, damping, turning)
-        return torque, (force[0], force[1], force[2] + ITEM_MASS * GRAVITY)
+        carrying = (force[0], force[1], force[2] + ITEM_MASS * GRAVITY)
+        return _only_if(within, torque), _only_if(within, carrying)
 
-    def _rotation(self, quaternion: tuple[float, float, float, float], yaw: float) -> Vector:
+    def _rotation(self, quaternion: tuple[Any, Any, Any, Any], yaw: Any) -> Vector:
         """The rotation, 2 vec(q_place q_box*), that takes a box to a level pose with that yaw, for small angles."""
         w, x, y, z = quaternion
-        cos, sin = math.cos(0.5 * yaw), math.sin(0.5 * yaw)
-        if self.either_way_round and abs(cos * w + sin * z) < abs(cos * z - sin * w):
-            cos, sin = -sin, cos
-        sign = math.copysign(2.0 / math.sqrt(w * w + x * x + y * y + z * z), cos * w + sin * z)
-        v_x, v_y, v_z = cross((x, y, z), (0.0, 0.0, sin))
-        return sign * (v_x - cos * x), sign * (v_y - cos * y), sign * (v_z + w * sin - cos * z)
+        cosine, sine = cos(0.5 * yaw), sin(0.5 * yaw)
+        alignment = cosine * w + sine * z
+        if self.either_way_round:
+            turned = cosine * z - sine * w
+            half_a_turn = fabs(alignment) < fabs(turned)
+            alignment = choose(half_a_turn, turned, alignment)
+            cosine, sine = choose(half_a_turn, -sine, cosine), choose(half_a_turn, cosine, sine)
+        sign = copysign(2.0 / sqrt(w * w + x * x + y * y + z * z), alignment)
+        v_x, v_y, v_z = cross((x, y, z), (0.0, 0.0, sine))
+        return sign * (v_x - cosine * x), sign * (v_y - cosine * y), sign * (v_z + w * sine - cosine * z)
+
+
+def _only_if(condition: Any, vector: Vector) -> Vector:
+    return choose(condition, vector[0], 0.0), choose(condition, vector[1], 0.0), choose(condition, vector[2], 0.0)

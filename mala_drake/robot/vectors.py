@@ -1,11 +1,23 @@
-"""Vectors of three plain floats, for code that runs at every step of the plant.
+"""Vectors of three plain scalars, for laws that are needed at every step of the plant.
 
-On three numbers numpy's overhead is ten times the arithmetic.
+A scalar is a float, or a symbol when a law is compiled into a CasADi function: one text serves both. On three floats
+numpy's overhead is ten times the arithmetic.
 """
 
 from __future__ import annotations
 
-Vector = tuple[float, float, float]
+from typing import Any
+
+import casadi
+
+Vector = tuple[Any, Any, Any]
+
+
+def choose(condition: Any, value: Any, otherwise: Any) -> Any:
+    """The scalar `value` where `condition` holds, else `otherwise`; what is not chosen may be NaN or infinite."""
+    if isinstance(condition, casadi.SX):
+        return casadi.if_else(condition, value, otherwise)
+    return value if condition else otherwise
 
 
 def plus(a: Vector, b: Vector) -> Vector:

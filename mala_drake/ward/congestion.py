@@ -28,19 +28,15 @@ class Congestion:
 
     def __init__(self, ward: Ward) -> None:
         self._background = ward.background_congestion
-        # The highest level counts, so the zones are looked at in rising order and later ones overwrite.
-        zones = sorted(ward.zones, key=lambda zone: (zone.level, zone.name))
-        self._levels = [zone.level for zone in zones]
-        self._polygons = [shapely.Polygon(zone.polygon) for zone in zones]
-        for polygon in self._polygons:
-            shapely.prepare(polygon)
+        self._levels = np.array([max(zone.level, self._background) for zone in ward.zones])
+        self._polygons = np.array([shapely.Polygon(zone.polygon) for zone in ward.zones], dtype=object)
+        shapely.prepare(self._polygons)
 
     def level(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Levels in (0, 1), shape (...), at `points` with shape (..., 2) in metres."""
+        """Levels in (0, 1), shape (...), at `points` with shape (..., 2) in metres: the highest of all zones there."""
         points = np.asarray(points, dtype=float)
-        levels = np.full(points.shape[:-1], self._background)
-        for level, polygon in zip(self._levels, self._polygons, strict=True):
-            levels[shapely.contains_xy(polygon, points[..., 0], points[..., 1])] = max(level, self._background)
+        inside = shapely.contains_xy(self._polygons, points[..., 0, None], points[..., 1, None])
+        levels: NDArray[np.float64] = np.where(inside, self._levels, self._background).max(-1, initial=self._background)
         return levels
 
     def speed_limit(self, points: ArrayLike) -> NDArray[np.float64]:

@@ -33,17 +33,19 @@ class ShapeDistances:
     """
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
-        self._centers = np.array([[s.x, s.y] for s in shapes]).reshape(-1, 2)
+        self._centers_x = np.array([s.x for s in shapes])
+        self._centers_y = np.array([s.y for s in shapes])
         self._cosines = np.array([np.cos(s.yaw) for s in shapes])
         self._sines = np.array([np.sin(s.yaw) for s in shapes])
-        self._half_sizes = np.array([[s.half_length, s.half_width] for s in shapes]).reshape(-1, 2)
+        self._half_lengths = np.array([s.half_length for s in shapes])
+        self._half_widths = np.array([s.half_width for s in shapes])
         self._radii = np.array([s.radius for s in shapes])
 
     def __call__(self, points: ArrayLike) -> NDArray[np.float64]:
         """Signed distances in metres, shape (..., number of shapes), of `points` with shape (..., 2)."""
-        offset = np.asarray(points, dtype=float)[..., None, :] - self._centers
-        along = self._cosines * offset[..., 0] + self._sines * offset[..., 1]
-        across = -self._sines * offset[..., 0] + self._cosines * offset[..., 1]
-        outside = np.abs(np.stack((along, across), axis=-1)) - self._half_sizes
-        beyond = np.maximum(outside, 0.0)
-        return np.hypot(beyond[..., 0], beyond[..., 1]) + np.minimum(outside.max(axis=-1), 0.0) - self._radii
+        points = np.asarray(points, dtype=float)[..., None, :]
+        dx, dy = points[..., 0] - self._centers_x, points[..., 1] - self._centers_y
+        along = np.abs(self._cosines * dx + self._sines * dy) - self._half_lengths
+        across = np.abs(self._cosines * dy - self._sines * dx) - self._half_widths
+        outside = np.hypot(np.maximum(along, 0.0), np.maximum(across, 0.0))
+        return outside + np.minimum(np.maximum(along, across), 0.0) - self._radii
