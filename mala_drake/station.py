@@ -8,7 +8,7 @@ from pydrake.geometry import Box, Meshcat, MeshcatVisualizer, MeshcatVisualizerP
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
-from pydrake.systems.primitives import Adder, Demultiplexer
+from pydrake.systems.primitives import Adder
 
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
@@ -148,7 +148,6 @@ class _StationBuilder:
         )
         self._forces = self._add("forces", Adder(2, self._plant.num_velocities()))
         self._battery = self._add("battery", Battery(initial_charge=config.initial_charge))
-        self._charge_rates = self._add("charge_rates", Demultiplexer(2))
         self._state_estimator = self._add("state_estimator", StateEstimator(noise=noise, seed=seed))
         self._item_positions = self._add("item_positions", ItemPositions(self._plant, self._items))
         unmapped = self._scenario.unmapped_shapes
@@ -251,6 +250,7 @@ class _StationBuilder:
         self._wire(self._executor, "in_place_report", self._task_planner, self._world)
         self._wire(self._executor, "magnet", self._magnet, self._world, self._controller)
         self._wire(self._executor, "arm_target", self._arm)
+        self._wire(self._executor, "charge_rates", self._battery)
         self._wire(self._world, "world_facts", self._grounding)
         self._wire(self._world, "handed_item", self._executor)
         self._wire(self._world, "clamped", self._magnet)
@@ -276,9 +276,6 @@ class _StationBuilder:
         connect(self._gyroscopic_effect.GetOutputPort("generalized_force"), self._forces.get_input_port(1))
         connect(self._forces.get_output_port(), plant.get_applied_generalized_force_input_port())
         connect(self._drivetrain.GetOutputPort("power"), self._battery.GetInputPort("power"))
-        connect(self._executor.GetOutputPort("charge_rates"), self._charge_rates.get_input_port())
-        connect(self._charge_rates.get_output_port(0), self._battery.GetInputPort("in_place_draw"))
-        connect(self._charge_rates.get_output_port(1), self._battery.GetInputPort("charging"))
 
     def _wire(self, source: Any, name: str, *targets: Any) -> None:
         """Connects the output port `name` to the input ports of the same name."""

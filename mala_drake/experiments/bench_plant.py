@@ -117,8 +117,7 @@ class _Rig:
         battery = self._builder.AddSystem(Battery())
         self._connect(drivetrain.GetOutputPort("power"), battery.GetInputPort("power"))
         self._connect(battery.GetOutputPort("charge"), drivetrain.GetInputPort("charge"))
-        self._feed(battery.GetInputPort("in_place_draw"), [0.0])
-        self._feed(battery.GetInputPort("charging"), [0.0])
+        self._feed(battery.GetInputPort("charge_rates"), [0.0, 0.0])
 
     def _add_arm(self, systems: Collection[str]) -> None:
         desired_state = self._plant.get_desired_state_input_port(self._robot.arm)

@@ -66,7 +66,8 @@ class Arm(LeafSystem):
         state.get_mutable_abstract_state(self._moving).set_value(accepted)
 
     def _calc_desired_state(self, context: Context, output: BasicVector) -> None:
-        position, velocity, _ = context.get_abstract_state(self._moving).get_value().motion.at(context.get_time())
+        motion = context.get_abstract_state(self._moving).get_value().motion
+        position, velocity, _ = motion.at(context.get_time())
         output.SetFromVector([*position, *velocity])
 
     def _calc_reachable(self, context: Context, output: BasicVector) -> None:

@@ -32,13 +32,12 @@ class Battery(LeafSystem):
         name: Battery
         input_ports:
         - power
-        - in_place_draw
-        - charging
+        - charge_rates
         output_ports:
         - charge
 
-    `power` is the electrical power of the drive, W. `in_place_draw` and `charging` are what an in-place action takes
-    and what a charger gives, in charge per second. `charge` is the state of charge in [0, 1]; an empty battery stays
+    `power` is the electrical power of the drive, W. `charge_rates` are what an in-place action takes and what a charger
+    gives, both in charge per second. `charge` is the state of charge in [0, 1]; an empty battery stays
     empty until it is charged. A rate that is not finite counts as nothing: a broken reading must not fill a battery.
     """
 
@@ -59,8 +58,7 @@ class Battery(LeafSystem):
             raise BadInput("battery capacity", repr(capacity), "a positive energy in J")
         self._capacity = capacity
         self._power = self.DeclareVectorInputPort("power", 1)
-        self._in_place_draw = self.DeclareVectorInputPort("in_place_draw", 1)
-        self._charging = self.DeclareVectorInputPort("charging", 1)
+        self._charge_rates = self.DeclareVectorInputPort("charge_rates", 2)
         charge = self.DeclareDiscreteState([initial_charge])
         self.DeclareStateOutputPort("charge", charge)
         self.DeclarePeriodicDiscreteUpdateEvent(PLANT_STEP, 0.0, self._integrate)
@@ -72,9 +70,8 @@ class Battery(LeafSystem):
         context.SetDiscreteState([charge])
 
     def _integrate(self, context: Context, discrete_state: DiscreteValues) -> None:
-        rate = self._charging.Eval(context)[0] - self._in_place_draw.Eval(context)[0]
-        rate -= self._power.Eval(context)[0] / self._capacity
-        state = discrete_state.get_mutable_vector()
-        charge = state.GetAtIndex(0)
+        draw, charging = self._charge_rates.Eval(context).tolist()
+        rate = charging - draw - self._power.Eval(context).item() / self._capacity
         if math.isfinite(rate):
-            state.SetAtIndex(0, min(max(charge + PLANT_STEP * rate, 0.0), 1.0))
+            state = discrete_state.get_mutable_vector()
+            state.SetAtIndex(0, min(max(state.GetAtIndex(0) + PLANT_STEP * rate, 0.0), 1.0))

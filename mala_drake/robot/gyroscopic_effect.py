@@ -60,10 +60,9 @@ class GyroscopicEffect(LeafSystem):
         start = robot.base.floating_velocities_start_in_v()
         self._base = slice(start, start + BASE_VELOCITIES)
         self._plant_state = self.DeclareVectorInputPort("plant_state", PLANT_STATE_SIZE)
-        self._zero = np.zeros(plant.num_velocities())
         self.DeclareVectorOutputPort(
             "generalized_force",
-            plant.num_velocities(),
+            BasicVector(np.zeros(plant.num_velocities())),
             self._calc_generalized_force,
             prerequisites_of_calc={self._plant_state.ticket()},
         )
@@ -72,8 +71,8 @@ class GyroscopicEffect(LeafSystem):
         _, _, yaw, v_x, _, omega = planar_state_of(self._plant_state.Eval(context).tolist())
         coupling = v_x * omega
         force = self._force_gain * coupling
-        generalized = self._zero.copy()
-        generalized[self._base] = (
+        # All other entries are 0, as in the port's model vector.
+        output.get_mutable_value()[self._base] = (
             0.0,
             0.0,
             self._torque_gain * coupling,
@@ -81,4 +80,3 @@ class GyroscopicEffect(LeafSystem):
             force * math.cos(yaw),
             0.0,
         )
-        output.SetFromVector(generalized)

@@ -22,8 +22,8 @@ def dut():
 def _run(dut, seconds, *, power=0.0, in_place_draw=0.0, charging=0.0):
     simulator = Simulator(dut)
     context = simulator.get_mutable_context()
-    for name, value in (("power", power), ("in_place_draw", in_place_draw), ("charging", charging)):
-        dut.GetInputPort(name).FixValue(context, [value])
+    dut.GetInputPort("power").FixValue(context, [power])
+    dut.GetInputPort("charge_rates").FixValue(context, [in_place_draw, charging])
     simulator.AdvanceTo(seconds)
     return dut.GetOutputPort("charge").Eval(context)[0]
 
@@ -43,10 +43,10 @@ def test_it_is_never_more_than_full_nor_less_than_empty(dut):
     assert _run(dut, 100.0, power=mut.CAPACITY) == 0.0
 
 
-@pytest.mark.parametrize("port", ["power", "in_place_draw", "charging"])
+@pytest.mark.parametrize("rate", ["power", "in_place_draw", "charging"])
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_a_broken_reading_changes_nothing(dut, port, bad):
-    assert _run(dut, 1.0, **{port: bad}) == 0.8
+def test_a_broken_reading_changes_nothing(dut, rate, bad):
+    assert _run(dut, 1.0, **{rate: bad}) == 0.8
 
 
 def test_the_charge_can_be_set(dut):
@@ -90,8 +90,7 @@ def make_powered_bench(make_bench):
         bench = make_bench(wire=wire, hidden_truth=hidden_truth)
         (battery,) = batteries
         context = battery.GetMyMutableContextFromRoot(bench.context)
-        for name in ("in_place_draw", "charging"):
-            battery.GetInputPort(name).FixValue(context, [0.0])
+        battery.GetInputPort("charge_rates").FixValue(context, [0.0, 0.0])
         return bench, lambda: battery.GetOutputPort("charge").Eval(context)[0]
 
     return make

@@ -7,7 +7,6 @@ from pydrake.common.value import Value
 from pydrake.math import RigidTransform
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import Demultiplexer
 
 from mala_drake.messages import Action, ActionKind, Outcome, Task
 from mala_drake.robot.arm import Arm
@@ -62,13 +61,10 @@ class Ward:
         ]
         for system in systems:
             builder.AddSystem(system)
-        rates = builder.AddSystem(Demultiplexer(2))
         ports = {
             "plant_state": self.plant.get_state_output_port(self.robot.robot),
             "arm_state": self.plant.get_state_output_port(self.robot.arm),
             "state": self.plant.get_state_output_port(),
-            "in_place_draw": rates.get_output_port(0),
-            "charging": rates.get_output_port(1),
         }
         for system in systems:
             for i in range(system.num_output_ports()):
@@ -78,7 +74,6 @@ class Ward:
                 port = system.get_input_port(i)
                 if port.get_name() in ports:
                     builder.Connect(ports[port.get_name()], port)
-        builder.Connect(ports["charge_rates"], rates.get_input_port())
         builder.Connect(ports["wheel_torques"], self.plant.get_actuation_input_port(self.robot.robot))
         builder.Connect(ports["desired_state"], self.plant.get_desired_state_input_port(self.robot.arm))
         builder.Connect(ports["generalized_force"], self.plant.get_applied_generalized_force_input_port())
