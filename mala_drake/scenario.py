@@ -24,6 +24,8 @@ from mala_drake.ward.routes import BODY_RADIUS
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import LoadWard, Ward
 
+HORIZON_KINDS = ("receding", "shrinking")
+
 
 @dataclass
 class ObstacleConfig:
@@ -97,6 +99,7 @@ class ControlConfig:
     solver: str = "snopt"
     sqp_iterations: int = 20  # Of solver rti, at most, per sample; 1 is the real-time iteration.
     horizon: int = 20  # Stages of one control period.
+    horizon_kind: str = "receding"  # receding (always as long), or shrinking (to the end of the leg).
     step_budget: int = 400  # Control steps of one leg.
     waypoint_iterations: int = 50  # Control steps to the next waypoint.
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
@@ -210,6 +213,7 @@ def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "patient.profile", scenario.patient.profile, tuple(PROFILES))
     _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
     _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
+    _one_of(at + "control.horizon_kind", scenario.control.horizon_kind, HORIZON_KINDS)
 
 
 def _task_choices() -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from pydrake.systems.primitives import Adder
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
+from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
 from mala_drake.learning.abstract_preference_learner import FloatArray
 from mala_drake.learning.make_learner import make_learner
@@ -186,7 +187,10 @@ class _StationBuilder:
             waypoint_iterations=scenario.control.waypoint_iterations,
             tolerated_failures=scenario.control.tolerated_failures,
         )
-        problem = OptimalControlProblem(horizon=scenario.control.horizon)
+        control = scenario.control
+        problem = OptimalControlProblem(horizon=control.horizon)
+        shrinking = control.horizon_kind == "shrinking"
+        make_solver = SolverByHorizon if shrinking else MakeSolver
         self._controller = self._add(
             "mpc_controller",
             MpcController(
@@ -194,7 +198,8 @@ class _StationBuilder:
                 guide=LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules),
                 congestion=self._congestion,
                 problem=problem,
-                solver=MakeSolver(scenario.control.solver, problem, **scenario.control.solver_options),
+                solver=make_solver(control.solver, problem, **control.solver_options),
+                shortest_horizon=SHORTEST_HORIZON if shrinking else None,
             ),
         )
         self._executor = self._add("in_place_executor", InPlaceExecutor(ward, items=self._kept))

@@ -108,6 +108,7 @@ def test_no_number_may_be_negative(prefix, name):
         ("patient: {profile: nobody}", ["patient.profile: 'nobody'", "speed_oriented", "safety_first"]),
         ("control: {solver: guess}", ["control.solver: 'guess'", "snopt", "ipopt"]),
         ("control: {sqp_iterations: 0}", ["control.sqp_iterations: 0", "from 1"]),
+        ("control: {horizon_kind: growing}", ["control.horizon_kind: 'growing'", "receding, shrinking"]),
         ("control: {horizon: 1}", ["control.horizon: 1", "from 2"]),
         ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
         ("robot: {initial_charge: 1.5}", ["robot.initial_charge: 1.5", "from 0 to 1"]),

@@ -88,6 +88,7 @@ class MpcController(LeafSystem):
         congestion: Congestion,
         problem: OptimalControlProblem,
         solver: Solver,
+        shortest_horizon: int | None = None,
     ) -> None:
         """Makes the controller.
 
@@ -97,6 +98,8 @@ class MpcController(LeafSystem):
             congestion: limits the speed by zone.
             problem: the optimal control problem that `solver` solves.
             solver: owned by this system.
+            shortest_horizon: if given, the horizon shrinks to the end of the leg, but to no fewer stages; the solver
+                must then take any horizon, see `SolverByHorizon`. If None it always has the problem's length.
         """
         super().__init__()
         self._targets = dict(targets)
@@ -104,6 +107,7 @@ class MpcController(LeafSystem):
         self._congestion = congestion
         self._problem = problem
         self._solver = solver
+        self._shortest_horizon = shortest_horizon
         self.solve_seconds: list[float] = []
         self._robot_state = self.DeclareVectorInputPort("robot_state", STATE_SIZE)
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
@@ -187,6 +191,8 @@ class MpcController(LeafSystem):
             horizon=self._problem.horizon,
             period=self._problem.period,
         )
+        if self._shortest_horizon is not None:
+            reference = reference.until_rest(self._shortest_horizon)
         parameters = make_parameters(
             style=driving.style,
             weights=self._preferences.Eval(context).estimate,

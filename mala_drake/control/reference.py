@@ -22,6 +22,7 @@ _TURN_FIRST = 0.5  # Radians of heading error beyond which a moving start turns 
 _ALIGNED = 0.12  # Radians within which such a turn is done.
 _MARGIN = 0.92  # Share of the speed ceiling that the reference uses, so that the limit itself stays inactive.
 _SEARCH_BACK, _SEARCH_AHEAD = 10, 60  # Samples of the path in which the robot is looked for.
+_AT_REST = 1e-6  # Metres, radians, and those per second.
 _REVERSE_SPEED = 0.3  # Metres per second at most when creeping back.
 
 
@@ -30,6 +31,16 @@ class Reference(Message):
     """The reference of one horizon: states, shape (N + 1, 6), with unwrapped yaw."""
 
     states: NDArray[np.float64]
+
+    def until_rest(self, shortest: int) -> Reference:
+        """The reference up to where it comes to rest, in at least `shortest` stages; all of it if it does not.
+
+        The horizon then shrinks by a stage a sample while the robot keeps to it, and ends with the leg.
+        """
+        away = np.flatnonzero(np.abs(self.states - self.states[-1]).max(axis=1) > _AT_REST)
+        stages = max(shortest, away[-1] + 1 if len(away) else 0)
+        at_rest = np.abs(self.states[-1, StateIndex.FORWARD_VELOCITY :]).max() <= _AT_REST
+        return Reference(self.states[: stages + 1]) if at_rest else self
 
 
 @dataclass(frozen=True, slots=True, eq=False)

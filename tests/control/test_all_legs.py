@@ -16,6 +16,7 @@ from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.solver import MakeSolver
+from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
 from mala_drake.messages import Action, ActionKind, MagnetCommand, Outcome, Preferences
 from mala_drake.robot.arm_kinematics import STOWED
 from mala_drake.robot.drivetrain import Drivetrain
@@ -35,7 +36,7 @@ PLACES = [place.name for place in WARD.places if place.category != "kitchen"]
 class Drive:
     """The robot on an open floor with its controller; the ward's shapes are seen, and measured against, but not met."""
 
-    def __init__(self):
+    def __init__(self, solver="snopt", *, shrinking=False):
         builder = DiagramBuilder()
         self.plant, scene_graph = MakeCarePlant(builder)
         AddFloor(self.plant)
@@ -44,9 +45,16 @@ class Drive:
         congestion, problem = Congestion(WARD), OptimalControlProblem()
         guide = LegGuide(leg_planner(WARD), congestion, WARD.shapes, LegRules())
         targets = {place.name: (place.x, place.y, place.yaw) for place in WARD.places}
-        solver = MakeSolver("snopt", problem)
+        make_solver = SolverByHorizon if shrinking else MakeSolver
         self.controller = builder.AddSystem(
-            MpcController(targets=targets, guide=guide, congestion=congestion, problem=problem, solver=solver)
+            MpcController(
+                targets=targets,
+                guide=guide,
+                congestion=congestion,
+                problem=problem,
+                solver=make_solver(solver, problem),
+                shortest_horizon=SHORTEST_HORIZON if shrinking else None,
+            )
         )
         drivetrain, estimator = builder.AddSystem(Drivetrain()), builder.AddSystem(StateEstimator())
         sensor = builder.AddSystem(ObstacleSensor(mapped=WARD.shapes))
@@ -90,8 +98,9 @@ class Drive:
 
 
 @pytest.mark.slow
-def test_every_leg_ends_stopped_in_its_pose_and_clear_of_everything():
-    drive = Drive()
+@pytest.mark.parametrize("solver", ["snopt", "rti"])
+def test_every_leg_ends_stopped_in_its_pose_and_clear_of_everything(solver):
+    drive = Drive(solver)
     for start, goal in itertools.permutations(PLACES, 2):
         report, clearance = drive.go(start, goal)
         where = f"{start} -> {goal}"
@@ -103,8 +112,10 @@ def test_every_leg_ends_stopped_in_its_pose_and_clear_of_everything():
         assert clearance >= 0.05, where
 
 
-def test_a_leg_round_furniture_ends_stopped_in_its_pose():
-    report, clearance = Drive().go("supply_A", "patient_bed_left")
+@pytest.mark.parametrize(("solver", "shrinking"), [("snopt", False), ("rti", False), ("rti", True)])
+def test_a_leg_round_furniture_ends_stopped_in_its_pose(solver, shrinking):
+    report, clearance = Drive(solver, shrinking=shrinking).go("supply_A", "patient_bed_left")
     assert report.outcome is Outcome.SUCCESS
+    assert report.failures == 0
     assert np.isfinite(report.closed_loop_cost)
     assert clearance >= 0.05

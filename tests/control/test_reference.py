@@ -74,3 +74,32 @@ def test_progress_is_found_near_the_last_one_on_a_path_that_comes_back():
     back, _ = track.progress(np.array([4.0, 0.3]), track.path.length - 4.2)
     assert there == pytest.approx(4.0, abs=0.1)
     assert back == pytest.approx(track.path.length - 4.0, abs=0.1)
+
+
+def test_a_reference_that_comes_to_rest_ends_there_and_one_that_does_not_stays_whole():
+    track = track_through([(0, 0), (1, 0)], target_yaw=0.3)
+    whole = roll(track, (0, 0, 0, 0, 0, 0), horizon=40)
+    short = whole.until_rest(5)
+    assert 5 < len(short.states) - 1 < 40
+    np.testing.assert_array_equal(short.states, whole.states[: len(short.states)])
+    np.testing.assert_allclose(short.states[-1], (1, 0, 0.3, 0, 0, 0), atol=1e-9)
+    assert np.abs(short.states[-2] - short.states[-1]).max() > 1e-6
+    moving = roll(track_through([(0, 0), (9, 0)]), (0, 0, 0, 1, 0, 0))
+    assert moving.until_rest(5) is moving
+
+
+def test_a_reference_already_at_rest_keeps_the_shortest_horizon():
+    track = track_through([(0, 0), (1, 0)])
+    at_goal = roll(track, (1, 0, 0, 0, 0, 0), length=1.0)
+    assert len(at_goal.until_rest(5).states) == 6
+
+
+def test_driven_as_planned_the_horizon_shrinks_by_a_stage_a_sample():
+    track = track_through([(0, 0), (1, 0)])
+    plan = roll(track, (0, 0, 0, 0, 0, 0), horizon=40).until_rest(1)
+    stages = []
+    for row in plan.states[:-1]:
+        length, _ = track.progress(row[:2], 0.0)
+        stages.append(len(roll(track, row, length, horizon=40).until_rest(1).states) - 1)
+    assert stages[0] == len(plan.states) - 1
+    assert max(abs(n - (stages[0] - k)) for k, n in enumerate(stages)) <= 1
