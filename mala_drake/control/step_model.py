@@ -36,7 +36,8 @@ class Condensed:
         lin = linearisation
         self.sensitivities = state_sensitivities(lin.transitions, lin.inputs)
         self.hessian = condensed_hessian(self.sensitivities, lin.state_weights, lin.control_weights.ravel())
-        self.hessian += _reverse_braking(lin, self.sensitivities)
+        if lin.couplings.any():
+            self.hessian += _reverse_braking(lin, self.sensitivities)
         self.transform = whitening(self.hessian)
 
 
