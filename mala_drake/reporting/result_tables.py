@@ -10,7 +10,7 @@ from mala_drake.reporting.paper_results import PAPER_RESULTS, RUNS, PaperResults
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import Spread, quantile, spread
 from mala_drake.reporting.results import Results
-from mala_drake.reporting.table import Table
+from mala_drake.reporting.table import Group, Row, Table
 from mala_drake.reporting.wording import title_of, words
 
 NONE = "–"
@@ -22,9 +22,9 @@ PAPERS_LEARNER = "projected_gradient"
 _MOST_COLUMNS = 3  # Patients that the table of conditions tells apart.
 
 _HEADINGS = (
-    "patient, learner",
+    "learner",
     "converged",
-    "conv. episode",
+    "conv. ep.",
     "best d",
     "final d",
     "dominant",
@@ -41,12 +41,12 @@ def convergence_table(results: Results) -> Table:
     for profile in results.profiles:
         rows = [_row(each, results) for figures in ours for each in figures if each.profile == profile]
         if profile in PAPER_RESULTS:
-            rows.append(_paper_row(profile, PAPER_RESULTS[profile]))
-        groups.append(tuple(rows))
-    groups.append(tuple(_total_row(figures, results) for figures in ours))
+            rows.append(_paper_row(PAPER_RESULTS[profile]))
+        groups.append(Group(tuple(rows), title_of(profile)))
+    groups.append(Group(tuple(_total_row(figures, results) for figures in ours), "All"))
     caption = (
-        f"Converged means d <= {CONVERGED_DISTANCE:g}, where d is the distance between learned and true weights. Conv. "
-        "episode is the number of rated episodes after which this first holds: median (quartiles); the paper counts "
+        f"Converged means d ≤ {CONVERGED_DISTANCE:g}, where d is the distance between learned and true weights. Conv. "
+        "ep. is the number of rated episodes after which this first holds: median (quartiles); the paper counts "
         "from 0, and one is added to its figures. Best and final d: median (quartiles) over seeds; in the paper, mean "
         "± standard deviation, and mean. Dominant counts the runs in which the greatest weight is the right one. "
         "Plans counts the variants executed to their end; the paper's table and text differ."
@@ -60,10 +60,10 @@ def compared_conditions(results: Results) -> tuple[str, ...]:
     return (results.main, *others)
 
 
-def _row(figures: ProfileResults, results: Results) -> tuple[str, ...]:
+def _row(figures: ProfileResults, results: Results) -> Row:
     right = figures.dominant_right
     return (
-        f"{title_of(figures.profile)}, {words(results.learner(figures.condition))}",
+        words(results.learner(figures.condition)),
         f"{figures.converged}/{len(figures.runs)}",
         counts(figures.convergence),
         distances(figures.best_distance),
@@ -75,11 +75,11 @@ def _row(figures: ProfileResults, results: Results) -> tuple[str, ...]:
     )
 
 
-def _paper_row(profile: str, paper: PaperResults) -> tuple[str, ...]:
+def _paper_row(paper: PaperResults) -> Row:
     best, deviation = paper.best_distance
     by_table, by_text = paper.variants
     return (
-        f"{title_of(profile)}, paper",
+        "paper",
         f"{RUNS}/{RUNS}",
         counts(Spread(*map(float, paper.rated_episodes))),
         f"{best:.3f} ± {deviation:.3f}",
@@ -91,13 +91,13 @@ def _paper_row(profile: str, paper: PaperResults) -> tuple[str, ...]:
     )
 
 
-def _total_row(figures: Sequence[ProfileResults], results: Results) -> tuple[str, ...]:
+def _total_row(figures: Sequence[ProfileResults], results: Results) -> Row:
     runs = sum(len(each.runs) for each in figures)
     known = [each for each in figures if each.dominant_right is not None]
     right = sum(each.dominant_right or 0 for each in known)
     distance = spread(run.final.distance_to_true for each in figures for run in each.runs)
     return (
-        f"All, {words(results.learner(figures[0].condition))}",
+        words(results.learner(figures[0].condition)),
         f"{sum(each.converged for each in figures)}/{runs}",
         counts(_convergence(figures)),
         NONE,
@@ -125,7 +125,7 @@ def condition_table(results: Results) -> Table | None:
         "condition",
         "runs",
         "converged",
-        "conv. episode",
+        "conv. ep.",
         "final d",
         *(f"final d, {words(profile)}" for profile in told_apart),
         "plans",
@@ -158,7 +158,7 @@ def condition_table(results: Results) -> Table | None:
         "Each condition over all its runs: medians (quartiles), final d by patient as medians. Cost is w*·f, the true "
         "weights on the measured features, of an average episode: the median over patients of the median over seeds."
     )
-    return Table("conditions", caption, headings, (tuple(rows[:1]), tuple(rows[1:])))
+    return Table("conditions", caption, headings, (Group(tuple(rows[:1])), Group(tuple(rows[1:]))))
 
 
 def execution_table(results: Results) -> Table:
@@ -166,14 +166,14 @@ def execution_table(results: Results) -> Table:
     headings = (
         "condition",
         "episodes",
-        "least clearance, m",
-        "worst stop, m",
-        "worst stop, rad",
-        "worst stop, m/s",
-        "MPC solves",
+        "clearance, m",
+        "stop, m",
+        "stop, rad",
+        "stop, m/s",
+        "solves",
         "failed",
         "mismatches",
-        "hours simulated",
+        "hours",
     )
     rows = []
     for condition in results.conditions:
@@ -193,10 +193,11 @@ def execution_table(results: Results) -> Table:
             )
         )
     caption = (
-        "Clearance of the robot's body to anything solid, taken at every plant step; the greatest errors with which a "
-        "leg ended; solves of the MPC; actions after which the symbolic state was not the expected one."
+        "The worst of all episodes: least clearance of the robot's body to anything solid, taken at every plant step; "
+        "greatest distance, angle and speed with which a leg ended. In all: solves of the MPC and how many failed; "
+        "actions after which the symbolic state was not the expected one; hours of simulation."
     )
-    return Table("execution", caption, headings, (tuple(rows),))
+    return Table("execution", caption, headings, (Group(tuple(rows)),))
 
 
 def _worst(values: Iterable[Sequence[float]]) -> float:
@@ -219,7 +220,9 @@ def timing_table(results: Results) -> Table | None:
         texts = (f"{value:.3g}" for value in (figures.median, figures.lower, figures.upper, max(values)))
         rows.append((f"{words(name)}, {unit} an episode" if unit == "s" else f"{words(name)}, {unit}", *texts))
     caption = "Over the episodes of the main condition. Times depend on the machine and on what else it was doing."
-    return Table("timing", caption, ("time", "median", "lower quartile", "upper quartile", "greatest"), (tuple(rows),))
+    return Table(
+        "timing", caption, ("time", "median", "lower quartile", "upper quartile", "greatest"), (Group(tuple(rows)),)
+    )
 
 
 def number(value: float, digits: int) -> str:

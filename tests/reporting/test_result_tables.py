@@ -53,25 +53,26 @@ def two_learners(tmp_path, simulate_results):
 
 def test_ours_the_papers_learner_and_the_paper_stand_beside_each_other(two_learners):
     profile, total = mut.convergence_table(two_learners).groups
-    assert [row[:5] for row in profile] == [
-        ("Speed oriented, main", "2/2", "1.5 (1.2–1.8)", "0.030 (0.025–0.035)", "0.030 (0.025–0.035)"),
+    assert (profile.title, total.title) == ("Speed oriented", "All")
+    assert [row[:5] for row in profile.rows] == [
+        ("main", "2/2", "1.5 (1.2–1.8)", "0.030 (0.025–0.035)", "0.030 (0.025–0.035)"),
         (
-            "Speed oriented, projected gradient",
+            "projected gradient",
             "1/2",
             "never",
             "0.150 (0.125–0.175)",
             "0.150 (0.125–0.175)",
         ),
-        ("Speed oriented, paper", "5/5", "2", "0.023 ± 0.008", "0.043"),
+        ("paper", "5/5", "2", "0.023 ± 0.008", "0.043"),
     ]
-    assert profile[2][6:] == ("3 or 4", "100 %", "–")
-    assert [row[0] for row in total] == ["All, main", "All, projected gradient"]
+    assert profile.rows[2][6:] == ("3 or 4", "100 %", "–")
+    assert [row[0] for row in total.rows] == ["main", "projected gradient"]
 
 
 def test_every_condition_has_a_row(two_learners):
     table = mut.condition_table(two_learners)
     assert table is not None
-    rows = [row for group in table.groups for row in group]
+    rows = [row for group in table.groups for row in group.rows]
     assert [row[:3] for row in rows] == [
         ("main", "2", "2/2"),
         ("bandit", "2", "1/2"),
@@ -91,7 +92,10 @@ def test_times_are_medians_over_episodes(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=3, change=take)
     table = mut.timing_table(load_results(tmp_path))
     assert table is not None
-    assert table.groups == ((("wall, s an episode", "2", "1.5", "2.5", "3"), ("plan p95, ms", "2", "2", "2", "2")),)
+    assert table.groups[0].rows == (
+        ("wall, s an episode", "2", "1.5", "2.5", "3"),
+        ("plan p95, ms", "2", "2", "2", "2"),
+    )
 
 
 def test_times_that_are_not_told_make_no_table(tmp_path, simulate_results):
@@ -115,5 +119,5 @@ def test_the_worst_of_all_episodes_is_told(tmp_path, simulate_results):
         return replace(record, sim_time_s=1800.0, min_clearance_m=math.inf, terminal_speeds_m_s=[0.04])
 
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2, change=drive)
-    ((row,),) = mut.execution_table(load_results(tmp_path)).groups
+    ((row,),) = [group.rows for group in mut.execution_table(load_results(tmp_path)).groups]
     assert row == ("main", "2", "0.100", "0.300", "0.200", "0.040", "500", "2", "1", "1.0")

@@ -13,9 +13,9 @@ from mala_drake.reporting import table as mut
 
 TABLE = mut.Table(
     "small",
-    "50 % of a_b <= 1.",
+    "50 % of a_b ≤ 1 < 2.",
     ("who", "d", "plans"),
-    ((("A & B", "0.1 ± 0.2", "3"), ("C", "–", "4")), (("all", "1", "7"),)),
+    (mut.Group((("A & B", "0.1 ± 0.2", "3"), ("C", "–", "4"))), mut.Group((("all", "1", "7"),), "In & all")),
 )
 cells = st.text(st.characters(codec="utf-8", exclude_categories=["Cc", "Cs", "Zl", "Zp"]), max_size=12)
 
@@ -42,18 +42,19 @@ class Cells(HTMLParser):
 
 def test_markdown_is_aligned():
     assert TABLE.to_markdown() == (
-        "| who   |         d | plans |\n"
-        "| ----- | --------: | ----: |\n"
-        "| A & B | 0.1 ± 0.2 |     3 |\n"
-        "| C     |         – |     4 |\n"
-        "| all   |         1 |     7 |\n"
+        "| who          |         d | plans |\n"
+        "| ------------ | --------: | ----: |\n"
+        "| A & B        | 0.1 ± 0.2 |     3 |\n"
+        "| C            |         – |     4 |\n"
+        "| **In & all** |           |       |\n"
+        "| all          |         1 |     7 |\n"
         "\n"
-        "50 % of a_b <= 1.\n"
+        "50 % of a_b ≤ 1 < 2.\n"
     )
 
 
 def test_a_bar_in_a_cell_stays_in_its_cell():
-    text = mut.Table("t", "", ("a", "b"), ((("x|y", "1"),),)).to_markdown()
+    text = mut.Table("t", "", ("a", "b"), (mut.Group((("x|y", "1"),)),)).to_markdown()
     assert "| x\\|y |" in text
 
 
@@ -62,7 +63,8 @@ def test_latex_has_the_rules_of_booktabs():
     assert r"\begin{tabular}{lrr}" in text
     assert r"    A \& B & 0.1 $\pm$ 0.2 & 3 \\" in text
     assert r"    C & -- & 4 \\" in text
-    assert r"\caption{50 \% of a\_b <= 1.}" in text
+    assert r"\caption{50 \% of a\_b $\le$ 1 $<$ 2.}" in text
+    assert r"    \multicolumn{3}{l}{\textit{In \& all}} \\" in text
     assert [text.count(rule) for rule in (r"\toprule", r"\midrule", r"\bottomrule")] == [1, 2, 1]
 
 
@@ -84,7 +86,7 @@ def balanced(latex):
 
 @given(first=cells, second=cells, caption=cells)
 def test_any_text_makes_latex_that_is_balanced_with_one_cell_a_column(first, second, caption):
-    text = mut.Table("t", caption, ("a", "b"), (((first, second),),)).to_latex()
+    text = mut.Table("t", caption, ("a", "b"), (mut.Group(((first, second),)),)).to_latex()
     assert balanced(text)
     body = text.split("\\midrule\n")[1].split("\n    \\bottomrule")[0]
     assert len(re.findall(r"(?<!\\)&", body)) == 1
@@ -94,11 +96,11 @@ def test_any_text_makes_latex_that_is_balanced_with_one_cell_a_column(first, sec
 @given(first=cells, second=cells)
 def test_any_text_makes_html_that_says_it(first, second):
     parser = Cells()
-    parser.feed(mut.Table("t", "", ("a", "b"), (((first, second),),)).to_html())
+    parser.feed(mut.Table("t", "", ("a", "b"), (mut.Group(((first, second),), "g"),)).to_html())
     assert parser.open == []
-    assert parser.found == ["a", "b", first, second]
+    assert parser.found == ["a", "b", "g", first, second]
 
 
 def test_a_row_that_is_too_short_is_refused():
     with pytest.raises(ValueError, match="1 cells under 2 headings"):
-        mut.Table("t", "", ("a", "b"), ((("x",),),))
+        mut.Table("t", "", ("a", "b"), (mut.Group((("x",),)),))
