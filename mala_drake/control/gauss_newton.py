@@ -33,7 +33,7 @@ def stage_model(problem: OptimalControlProblem) -> casadi.Function:
     for k in range(problem.horizon):
         last = k == problem.horizon - 1
         tracking = pieces["terminal.weights"] if last else pieces["stage.state_weights"]
-        weights.append(2 * casadi.diag(tracking) + _penalty_weight(states[:, k + 1], k, pieces))
+        weights.append(2 * casadi.diag(tracking) + penalty_weight(states[:, k + 1], k, pieces))
     jacobians = problem.stage_jacobians(states[:, :-1], controls, pieces["dynamics"])
     return densified("stage_model", [states, controls, parameters], [*jacobians, casadi.horzcat(*weights)])
 
@@ -76,15 +76,16 @@ class GaussNewtonModel:
         return hessian
 
 
-def _penalty_weight(state: casadi.SX, stage: int, pieces: dict[str, casadi.SX]) -> casadi.SX:
+def penalty_weight(state: casadi.SX, stage: int, pieces: dict[str, casadi.SX]) -> casadi.SX:
     """The share of the penalties of one stage, a (6, 6) matrix; taken by the few states that the margins depend on."""
     obstacles, limits = obstacle_margins(state, pieces), limit_margins(state, stage, pieces)
-    return _reweighted(obstacles, OBSTACLE_BUFFER, pieces["constraints.obstacle_penalty"], state) + _reweighted(
+    return reweighted(obstacles, OBSTACLE_BUFFER, pieces["constraints.obstacle_penalty"], state) + reweighted(
         limits, LIMIT_BUFFER, pieces["constraints.limit_penalty"], state
     )
 
 
-def _reweighted(margins: casadi.SX, buffer: float, penalty: casadi.SX, state: casadi.SX) -> casadi.SX:
+def reweighted(margins: casadi.SX, buffer: float, penalty: casadi.SX, state: casadi.SX) -> casadi.SX:
+    """The convex curvature, a (6, 6) matrix, of `penalty` times the Huberised hinges of buffer - margins."""
     excess = casadi.fmax(buffer - margins, 0)
     curvature = penalty * (excess > 0) / casadi.fmax(excess, buffer)
     slopes = casadi.jacobian(margins, state)

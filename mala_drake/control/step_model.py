@@ -107,7 +107,7 @@ class StepModel:
         margins = lin.widths[0] - lin.excesses[:, : hard.shape[1]][hard]
         priced = lin.prices > 0
         chosen = priced & (lin.excesses > -_REACH)
-        for _ in range(_PASSES):
+        for passes_left in reversed(range(_PASSES)):
             problem = SoftBoxQp(
                 hessian=self._condensed.hessian,
                 transform=self._condensed.transform,
@@ -120,7 +120,7 @@ class StepModel:
             )
             found = solver.solve(problem, np.concatenate((guess.box, guess.rows[chosen], guess.hard[hard])))
             forgotten = priced & ~chosen & (self._excesses_after(found.point) > 0)
-            if not forgotten.any():
+            if not passes_left or not forgotten.any():
                 break
             chosen |= forgotten
         rows, clearance = np.zeros_like(lin.excesses), np.zeros(hard.shape)

@@ -193,6 +193,14 @@ def test_a_qp_without_solution_ends_the_solve_with_admissible_controls(problem, 
     assert solver.solve(state, parameters).success
 
 
+def test_a_qp_that_is_never_given_all_its_rows_still_gives_a_step(problem, parameters_toward, monkeypatch):
+    monkeypatch.setattr("mala_drake.control.step_model._PASSES", 1)
+    state, parameters = random_case(0, parameters_toward, obstacles=(BOX,), speed_limit=0.4)
+    solution = MakeSolver("rti", problem).solve(state, parameters)
+    assert solution.status is not Status.NUMERICAL
+    assert solution.optimality < 10.0
+
+
 def test_walls_that_have_no_solution_fall_back_to_the_penalty(problem, parameters_toward, monkeypatch):
     solver = MakeSolver("rti", problem, hard_clearance=True)
     inner = solver._tools.qp_solver

@@ -38,7 +38,7 @@ class SensitivityAnalysis:
     """Derivatives of the solutions of one problem, by the implicit function theorem (paper, eq. IFT).
 
     The theorem is applied to the primal-dual barrier system kappa_nu = 0, whose solution is smooth wherever
-    second-order sufficiency holds and is that of the problem up to the order of nu. Every result carries its
+    it is a strict minimum and is that of the problem up to the order of nu. Every result carries its
     `Regularity`, and derivatives that do not exist are nan. One instance serves one user: it owns work arrays.
     """
 

@@ -1,7 +1,7 @@
 """Newton's method on the primal-dual barrier system of the input set.
 
 States and costates follow the controls exactly, so that only stationarity and complementarity have a residual. A step
-has the right curvature (a multiple of the identity is added where the exact Hessian has not) and decreases the barrier
+has the right curvature (that of Gauss and Newton's model where the exact Hessian has not) and decreases the barrier
 function (Nocedal & Wright, Numerical Optimization, 2nd ed., Ch. 19). The full step is tried first, put back on the
 curve slack * multiplier = nu by the smoothing of Chen, Harker, Kanzow and Smale: it changes many active bounds at once,
 where the step that stops short of the first bound needs dozens.
@@ -26,7 +26,6 @@ _TO_BOUNDARY = 0.995  # Share of the way to a bound that one step may take.
 _SUFFICIENT = 1e-4  # Of the decrease that the slope promises.
 _HALVINGS = 30
 _ROUNDING = 1e-12  # Relative to the cost; a promised decrease below it cannot be seen.
-_FIRST_SHIFT, _SHIFT_FACTOR, _SHIFTS = 1e-2, 10.0, 10
 _LARGEST_SLACK = 0.9  # Share of the box.
 
 
@@ -98,7 +97,7 @@ class CentralPathSearch:
             if converged or iteration == limit or not np.isfinite(residual):
                 break
             if not factorisation.pivots.min() > 0:
-                factorisation = self._convexified(iterate, curvature, slope)
+                factorisation = self._factorise(iterate, curvature, slope, convex=True)
             improved = self._step(iterate, factorisation, scale, barrier)
             if improved is None:
                 break
@@ -184,20 +183,10 @@ class CentralPathSearch:
         fixed = 1.0 - self._mask
         return self._mask * (controls - self._lower) + fixed, self._mask * (self._upper - controls) + fixed
 
-    def _factorise(self, iterate: _Iterate, curvature: Vector, slope: Vector) -> Factorisation:
+    def _factorise(self, iterate: _Iterate, curvature: Vector, slope: Vector, *, convex: bool = False) -> Factorisation:
         return self._sweeps.backward(
-            iterate.states, iterate.controls, curvature=curvature, slope=slope, free=self._mask
+            iterate.states, iterate.controls, curvature=curvature, slope=slope, free=self._mask, convex=convex
         )
-
-    def _convexified(self, iterate: _Iterate, curvature: Vector, slope: Vector) -> Factorisation:
-        """The factorisation with the smallest shift tried that makes the Hessian positive definite."""
-        least = float(self._least.max())
-        for power in range(_SHIFTS):
-            shift = _FIRST_SHIFT * _SHIFT_FACTOR**power * least
-            factorisation = self._factorise(iterate, curvature + shift, slope)
-            if factorisation.pivots.min() > 0:
-                break
-        return factorisation
 
 
 def _length(values: Vector, step: Vector) -> float:

@@ -37,6 +37,7 @@ class Regularity(Message):
     converged: bool  # The point solves the barrier system.
     licq: bool  # No control has both bounds active.
     sosc: bool  # The reduced Hessian is positive definite.
+    barrier_pivot: float  # The smallest one of the barrier system, positive where its solution has a derivative.
     smallest_pivot: float  # Of the reduced Hessian; not positive where second-order sufficiency fails.
     condition: float  # Largest over smallest pivot, a lower estimate of the reduced Hessian's condition number.
     weakly_active: NDArray[np.bool_]  # Shape (N, 3).
@@ -51,14 +52,18 @@ class Regularity(Message):
 
     @property
     def differentiable(self) -> bool:
-        """Whether the barrier solution has a derivative at all: without it sensitivities are nan."""
-        return self.converged and self.sosc
+        """Whether the barrier solution is a strict minimum and has a derivative: without it sensitivities are nan.
+
+        A large nu makes many bounds weakly active, and a control that such a bound holds can curve the cost downward
+        while the barrier's own curvature outweighs that: then this holds and second-order sufficiency does not.
+        """
+        return self.converged and self.barrier_pivot > 0
 
     @property
     def regular(self) -> bool:
         """Whether all holds, so that the sensitivity is also that of the problem itself, up to the order of nu."""
         smooth = self.kink_distance > _KINK
-        return self.differentiable and self.licq and self.strict_complementarity and smooth
+        return self.differentiable and self.sosc and self.licq and self.strict_complementarity and smooth
 
 
 def regularity(point: KktPoint, sweeps: Sweeps, kinks: KinkDistances) -> Regularity:
@@ -78,6 +83,7 @@ def regularity(point: KktPoint, sweeps: Sweeps, kinks: KinkDistances) -> Regular
         licq=bool((inputs.lower < inputs.upper).all()),
         # Not a number compares as failed; with every control held there is nothing left to curve.
         sosc=pivots.size == 0 or smallest > _SMALLEST_PIVOT * largest,
+        barrier_pivot=float(point.factorisation.pivots.min()),
         smallest_pivot=smallest,
         condition=largest / smallest if smallest > 0 else np.inf,
         weakly_active=~held & (share > _BLEND),

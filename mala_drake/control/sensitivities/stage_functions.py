@@ -17,6 +17,8 @@ import casadi
 
 from mala_drake.buffered_function import densified
 from mala_drake.control import model
+from mala_drake.control.gauss_newton import penalty_weight, reweighted
+from mala_drake.control.model import ControlIndex, StateIndex
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.shooting import (
     LIMIT_BUFFER,
@@ -28,6 +30,7 @@ from mala_drake.control.shooting import (
     weighted_square,
 )
 
+from .riccati import Curvature, StageDerivatives, backward_stage
 from .stage_data import TARGET, WEIGHTS, StageData
 
 _STATE, _CONTROL = model.STATE_SIZE, model.CONTROL_SIZE
@@ -75,43 +78,26 @@ class StageFunctions:
 
     @cached_property
     def backward(self) -> casadi.Function:
-        """One backward sweep: costates, the exact second-order model and its Riccati factorisation.
+        """The backward sweep of `riccati.py` with exact second derivatives."""
+        node = casadi.hessian(self.tracking + self.penalties, self.reached)[0]
+        cross = casadi.jacobian(casadi.gradient(self.penalties, self.control), self.reached)
+        both = casadi.vertcat(self.state, self.control)
+        dynamics = casadi.hessian(casadi.dot(self.costate, self.next_state), both)[0]
+        return self._sweep("backward", Curvature(node, cross, dynamics))
 
-        The columns of every argument and result run from the last stage to the first. (P, lambda, s; z_k, u_k, z_{k+1},
-        data_k, sigma_k, b_k, free_k) -> (P, lambda, s) before the node of stage k, and for the stage: lambda_{k+1},
-        gradient with respect to u_k, P_{k+1}', A', B', C', K', M^-1, pivots of M, diagonal of M without sigma, and the
-        Newton step's feed-forward. Arguments: sigma_k is the barrier's curvature and b_k its gradient; free_k is 0 for
-        a control that is not a variable, else 1.
-        """
-        n, m = _STATE, _CONTROL
-        value, multiplier, linear = casadi.SX.sym("P", n, n), casadi.SX.sym("l", n), casadi.SX.sym("s", n)
-        curvature, slope, free = (casadi.SX.sym(name, m) for name in ("sigma", "b", "free"))
-        node_gradient, node_hessian, cross = self._node_derivatives()
-        costate = multiplier + node_gradient
-        P = value + node_hessian
-        A, B = casadi.jacobian(self.next_state, self.state), casadi.jacobian(self.next_state, self.control)
-        D_zz, D_uz, D_uu = self._dynamics_curvature(costate)
-        gradient = casadi.gradient(self.effort + self.penalties, self.control) + B.T @ costate + slope
-        transfer = B.T @ P + cross
-        bare = casadi.hessian(self.effort, self.control)[0] + D_uu + transfer @ B + (cross @ B).T
-        mask = casadi.diag(free)
-        M = mask @ (bare + casadi.diag(curvature)) @ mask + casadi.diag(1 - free)
-        G = mask @ (D_uz + transfer @ A)
-        inverse, pivots = _symmetric_inverse(M)
-        gain = inverse @ G
-        inverse = mask @ inverse @ mask
-        rest = free * (gradient + B.T @ linear)
-        feed_forward = inverse @ rest
-        before = A.T @ P @ A + D_zz - G.T @ gain
-        outputs = [
-            (before + before.T) / 2,
-            A.T @ costate,
-            A.T @ linear - gain.T @ rest,
-            *(costate, gradient, P.T, A.T, B.T, cross.T, gain.T, inverse, pivots, casadi.diag(bare), feed_forward),
-        ]
-        inputs = [value, multiplier, linear, self.state, self.control, self.reached, self.numbers]
-        stage = densified("stage", [*inputs, curvature, slope, free], outputs)
-        return stage.mapaccum("backward", self.horizon, 3)
+    @cached_property
+    def convex_backward(self) -> casadi.Function:
+        """The same sweep with a convex model in the place of the exact one: that of Gauss and Newton."""
+        pieces = self.data.pieces(self.numbers)
+        backward = self.reached[StateIndex.FORWARD_VELOCITY] + LIMIT_BUFFER
+        braking = pieces["constraints.reverse_braking_penalty"] * self.control[ControlIndex.BRAKE]
+        node = (
+            casadi.hessian(self.tracking, self.reached)[0]
+            + penalty_weight(self.reached, 0, pieces)
+            + reweighted(backward, LIMIT_BUFFER, braking, self.reached)
+        )
+        nothing = casadi.SX(_STATE + _CONTROL, _STATE + _CONTROL)
+        return self._sweep("convex_backward", Curvature(node, casadi.SX(_CONTROL, _STATE), nothing))
 
     @cached_property
     def newton_step(self) -> casadi.Function:
@@ -130,31 +116,15 @@ class StageFunctions:
         inputs = [self.control, self.reached, self.costate, self.state, self.numbers]
         return densified("gradient", inputs, [casadi.gradient(lagrangian, self.numbers)]).map(self.horizon)
 
-    def _node_derivatives(self) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
-        """Gradient and Hessian of the node's cost with respect to z_{k+1}, and C = d^2 node / du_k dz_{k+1}."""
-        node = self.tracking + self.penalties
-        hessian, gradient = casadi.hessian(node, self.reached)
-        return gradient, hessian, casadi.jacobian(casadi.gradient(self.penalties, self.control), self.reached)
-
-    def _dynamics_curvature(self, costate: casadi.SX) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
-        """Second derivatives of lambda' f: with respect to (z, z), (u, z) and (u, u)."""
-        both = casadi.vertcat(self.state, self.control)
-        hessian = casadi.hessian(casadi.dot(self.costate, self.next_state), both)[0]
-        hessian = casadi.substitute(hessian, self.costate, costate)
-        return hessian[:_STATE, :_STATE], hessian[_STATE:, :_STATE], hessian[_STATE:, _STATE:]
-
-
-def _symmetric_inverse(matrix: casadi.SX) -> tuple[casadi.SX, casadi.SX]:
-    """The inverse of a symmetric matrix by L D L', with D's diagonal, whose signs are those of the eigenvalues."""
-    size = matrix.shape[0]
-    lower, pivots = casadi.SX.eye(size), casadi.SX.zeros(size)
-    for j in range(size):
-        pivots[j] = matrix[j, j] - sum((lower[j, k] ** 2 * pivots[k] for k in range(j)), casadi.SX(0))
-        for i in range(j + 1, size):
-            known = sum((lower[i, k] * lower[j, k] * pivots[k] for k in range(j)), casadi.SX(0))
-            lower[i, j] = (matrix[i, j] - known) / pivots[j]
-    inverse_lower = casadi.SX.eye(size)
-    for j in range(size):
-        for i in range(j + 1, size):
-            inverse_lower[i, j] = -sum((lower[i, k] * inverse_lower[k, j] for k in range(j, i)), casadi.SX(0))
-    return inverse_lower.T @ casadi.diag(1 / pivots) @ inverse_lower, pivots
+    def _sweep(self, name: str, curvature: Curvature) -> casadi.Function:
+        """The sweep along the horizon with the curvature of one stage."""
+        derivatives = StageDerivatives(
+            by_state=casadi.jacobian(self.next_state, self.state),
+            by_control=casadi.jacobian(self.next_state, self.control),
+            node_gradient=casadi.gradient(self.tracking + self.penalties, self.reached),
+            control_gradient=casadi.gradient(self.effort + self.penalties, self.control),
+            effort=casadi.hessian(self.effort, self.control)[0],
+            curvature=curvature,
+        )
+        arguments = [self.state, self.control, self.reached, self.numbers]
+        return backward_stage(derivatives, self.costate, arguments).mapaccum(name, self.horizon, 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +49,7 @@ class Sweeps:
         self._backward = BufferedFunction(functions.backward)
         self._newton = BufferedFunction(functions.newton_step)
         self._initial_state = np.zeros(STATE_SIZE)
+        self._reversed_data = np.zeros((functions.data.size, functions.horizon))
 
     def set_parameters(self, initial_state: Vector, packed: Vector) -> None:
         """Chooses z_0, shape (6,), and p for the sweeps to come."""
@@ -55,7 +57,7 @@ class Sweeps:
         self._initial_state = np.array(initial_state, dtype=float)
         self._forward.arguments[0][:, 0] = initial_state
         self._forward.arguments[2][:] = data.T
-        self._backward.arguments[6][:] = data[::-1].T
+        self._reversed_data = data[::-1].T
 
     def forward(self, controls: Vector) -> tuple[Vector, float]:
         """The states, shape (N + 1, 6), and the cost without the tracking cost of z_0."""
@@ -65,7 +67,14 @@ class Sweeps:
         return np.vstack((self._initial_state, states.T)), float(costs.sum())
 
     def backward(
-        self, states: Vector, controls: Vector, *, curvature: Vector, slope: Vector, free: Vector
+        self,
+        states: Vector,
+        controls: Vector,
+        *,
+        curvature: Vector,
+        slope: Vector,
+        free: Vector,
+        convex: bool = False,
     ) -> Factorisation:
         """Costates and factorisation at a trajectory.
 
@@ -75,13 +84,15 @@ class Sweeps:
             curvature: second derivative of what is added to the cost of each control, shape (N, 3).
             slope: its first derivative, shape (N, 3).
             free: 1 for controls that are variables, 0 for the others, shape (N, 3).
+            convex: whether a convex model of the cost is factorised in the place of the exact one.
         """
-        arguments = self._backward.arguments
+        function = self._convex if convex else self._backward
+        function.arguments[6][:] = self._reversed_data
         for index, rows in ((3, states[:-1]), (4, controls), (5, states[1:]), (7, curvature), (8, slope), (9, free)):
-            arguments[index][:] = rows[::-1].T
-        self._backward()
+            function.arguments[index][:] = rows[::-1].T
+        function()
         P, multiplier, _, costate, gradient, value, A, B, cross, gain, inverse, pivots, bare, feed_forward = (
-            result.T for result in self._backward.results
+            result.T for result in function.results
         )
         n, m = STATE_SIZE, CONTROL_SIZE
         return Factorisation(
@@ -109,6 +120,11 @@ class Sweeps:
         arguments[4][:] = factorisation.feed_forward.T
         self._newton()
         return self._newton.results[1].T.copy()
+
+    @cached_property
+    def _convex(self) -> BufferedFunction:
+        """Needed only far from solutions, hence made at first use."""
+        return BufferedFunction(self._functions.convex_backward)
 
     def _stages(self, rows: Vector, *shape: int) -> Vector:
         """One entry a stage, the first stage first."""

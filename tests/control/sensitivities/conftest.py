@@ -81,56 +81,69 @@ def choose():
     return make
 
 
-@pytest.fixture(scope="session")
-def solve(small):
+class Solves:
     """(state, parameters) -> the point of the central path; `near` is a point to start at instead of a solver."""
-    solver = MakeSolver("snopt", small, tolerance=1e-7)
-    searches = {}
 
-    def run(state, chosen, barrier=1e-7, near=None, offset=None):
-        small.offset = offset
+    def __init__(self, problem, solver):
+        self._problem = problem
+        self._columns = Columns(problem.layout)
+        self._solver = solver
+        self._searches = {}
+
+    def __call__(self, state, chosen, barrier=1e-7, near=None, offset=None):
+        self._problem.offset = offset
         try:
             if near is None:
-                solution = solver.solve(state, chosen)
+                solution = self._solver.solve(state, chosen)
                 assert solution.success
                 controls, duals = solution.controls, solution.control_duals
             else:
                 controls, duals = near.controls, near.lower_multipliers - near.upper_multipliers
-            search = searches.setdefault(barrier, InteriorPoint(small, barrier=barrier))
+            search = self._searches.setdefault(barrier, InteriorPoint(self._problem, barrier=barrier))
             point = search.polish(controls, state, chosen, duals=duals)
         finally:
-            small.offset = None
+            self._problem.offset = None
         assert point.converged
         return point
 
-    return run
-
-
-@pytest.fixture(scope="session")
-def perturbed(small, solve):
-    """(point, column, size) -> the point after one column of (p, bounds, z_0) has moved by `size`."""
-    columns = Columns(small.layout)
-
-    def moved(array, entry, size):
-        array = np.array(array)
-        array[entry] += size
-        return array
-
-    def run(point, column, size):
-        name = next(name for name, place in columns.slices.items() if place.start <= column < place.stop)
-        entry = column - columns.slices[name].start
+    def perturbed(self, point, column, size):
+        """The point after one column of (p, bounds, z_0) has moved by `size`."""
+        slices = self._columns.slices
+        name = next(name for name, place in slices.items() if place.start <= column < place.stop)
+        entry = column - slices[name].start
         state, chosen, offset = point.initial_state, point.parameters, None
         if name == INITIAL_STATE:
-            state = moved(state, entry, size)
+            state = _moved(state, entry, size)
         elif name in (LOWER, UPPER):
             bound = name.split(".")[1]
-            inputs = replace(chosen.inputs, **{bound: moved(getattr(chosen.inputs, bound), entry, size)})
+            inputs = replace(chosen.inputs, **{bound: _moved(getattr(chosen.inputs, bound), entry, size)})
             chosen = replace(chosen, inputs=inputs)
         else:
             offset = (column, size)
-        return solve(state, chosen, point.barrier, point, offset)
+        return self(state, chosen, point.barrier, point, offset)
 
-    return run
+
+def _moved(array, entry, size):
+    array = np.array(array)
+    array[entry] += size
+    return array
+
+
+@pytest.fixture(scope="session")
+def solve(small):
+    return Solves(small, MakeSolver("snopt", small, tolerance=1e-7))
+
+
+@pytest.fixture(scope="session")
+def full():
+    """The problem of the hospital case, N = 20, and its solves."""
+    problem = PackedProblem()
+    return problem, Solves(problem, MakeSolver("rti", problem))
+
+
+@pytest.fixture(scope="session")
+def perturbed(solve):
+    return solve.perturbed
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ import pytest
 
 from mala_drake.control import MakeSolver
 from mala_drake.control.sensitivities import LOWER, UPPER, SensitivityAnalysis
+from mala_drake.experiments.ward_leg import record_leg
+from mala_drake.ward.ward_map import LoadWard
 
 PARTS = ("states", "controls", "costates", "lower_multipliers", "upper_multipliers")
 
@@ -104,3 +106,32 @@ def test_an_active_bound_takes_its_control_along_and_an_inactive_one_moves_nothi
     assert inactive
     for i in inactive:
         np.testing.assert_allclose(sensitivity.controls[..., upper + i], 0, atol=1e-4)
+
+
+@pytest.mark.slow
+def test_every_column_of_the_full_problem_along_a_leg_of_the_ward(full):
+    """N = 20 with eight obstacles: all 242 columns of all variables, at a few points of a leg.
+
+    At this nu bounds change from active to inactive over a range of controls that is wide for the differences. Costates
+    are of the order of 1e3, and the difference of two of them has lost as many digits.
+    """
+    problem, solve = full
+    leg = record_leg(problem, MakeSolver("rti", problem), LoadWard(), "supply_A", "patient_bed_left")
+    analysis = SensitivityAnalysis(problem)
+    state = leg.initial_state
+    for step, parameters in enumerate(leg.steps[:46]):
+        point = solve(state, parameters, 1e-5)
+        if step % 15 == 0:
+            sensitivity, conditions = analysis.primal_dual(point)
+            assert conditions.differentiable
+            policy = analysis.policy(point).jacobian
+            for column in range(analysis.columns.size):
+                ends = [solve.perturbed(point, column, size) for size in (1e-6, -1e-6)]
+                for part in PARTS:
+                    expected = (getattr(ends[0], part) - getattr(ends[1], part)) / 2e-6
+                    tolerance = (1e-3 if part == "costates" else 1e-5) * (1 + np.abs(expected).max())
+                    actual = getattr(sensitivity, part)[..., column]
+                    np.testing.assert_allclose(actual, expected, atol=tolerance, err_msg=f"{step} {part} {column}")
+                    if part == "controls":
+                        np.testing.assert_allclose(policy[:, column], expected[0], atol=tolerance)
+        state = problem.step(state, point.controls[0], parameters.dynamics.vector).full()[:, 0]

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import event, given, settings
@@ -76,6 +78,29 @@ def test_second_order_sufficiency_is_definiteness_of_the_dense_hessian(small, co
     assert (found.smallest_pivot > 0) == found.sosc
     event("definite" if found.sosc else "indefinite")
     assert not found.differentiable
+
+
+def test_what_follows_from_the_conditions():
+    good = mut.Regularity(
+        converged=True,
+        licq=True,
+        sosc=True,
+        barrier_pivot=1.0,
+        smallest_pivot=1.0,
+        condition=2.0,
+        weakly_active=np.zeros((4, 3), dtype=bool),
+        kink_distance=1.0,
+        residual=0.0,
+        distance=0.0,
+    )
+    assert good.regular
+    assert good.differentiable
+    for name, value in (("converged", False), ("barrier_pivot", -1.0), ("barrier_pivot", np.nan)):
+        assert not replace(good, **{name: value}).differentiable
+    for name, value in (("licq", False), ("sosc", False), ("weakly_active", np.eye(4, 3) > 0), ("kink_distance", 1e-9)):
+        broken = replace(good, **{name: value})
+        assert broken.differentiable
+        assert not broken.regular
 
 
 def test_a_search_that_was_cut_short_is_not_differentiable(small, conditions, start, choose):

@@ -80,3 +80,17 @@ def test_results_survive_the_next_sweep(small, sweeps, choose):
     for f, gradient, states, copy in kept:
         np.testing.assert_array_equal(f.gradient, gradient)
         np.testing.assert_array_equal(states, copy)
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=20)
+def test_the_convex_model_is_positive_definite_everywhere_with_the_same_gradient(small, sweeps, choose, seed):
+    state, packed, controls = random_case(small, choose, seed)
+    sweeps.set_parameters(state, packed)
+    states, _ = sweeps.forward(controls)
+    arguments = {"curvature": np.zeros_like(controls), "slope": np.zeros_like(controls), "free": np.ones_like(controls)}
+    exact = sweeps.backward(states, controls, **arguments)
+    convex = sweeps.backward(states, controls, **arguments, convex=True)
+    assert convex.pivots.min() > 0
+    np.testing.assert_allclose(convex.gradient, exact.gradient, rtol=1e-12, atol=1e-9)
+    assert (sweeps.newton_step(convex) * convex.gradient).sum() < 0
