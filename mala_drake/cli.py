@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,6 +40,8 @@ _SEARCHES: tuple[SearchName, ...] = ("astar", "ucs")
 _WEIGHT_FLUENTS = ("(w0)", "(w1)", "(w2)", "(w3)", "(w4)")
 
 _INTERRUPTED = 130  # What a shell calls a program ended by Control-C.
+
+_MOST_SEEDS = 10_000  # Of one range: more are a slip of the hand.
 
 _OPTION_OF = {
     "task": "--task",
@@ -190,6 +193,95 @@ def graph(
         raise BadInput("--max-depth", str(max_depth), "a whole number >= 0")
     write_graph(MakeCareStation(LoadScenario(scenario)), out, max_depth=max_depth)
     typer.echo(f"wrote {out}")
+
+
+@app.command()
+def experiment(
+    name: Annotated[str, typer.Argument(help="convergence.")],
+    scenario: Annotated[
+        Path | None, typer.Argument(help="Scenario file that the runs are based on; the usual scenario if left out.")
+    ] = None,
+    profiles: Annotated[
+        str | None, typer.Option(help="Patient profiles, separated by commas; all five if left out.")
+    ] = None,
+    seeds: Annotated[str | None, typer.Option(help="Random seeds, for example 0,1,7 or 0-4, which is usual.")] = None,
+    episodes: Annotated[int | None, typer.Option(help="Number of episodes of each run.")] = None,
+    learners: Annotated[
+        str | None,
+        typer.Option(help="Of convergence: preference learners, separated by commas; the first is the main one."),
+    ] = None,
+    task: Annotated[str | None, typer.Option(help="medication, meal or alternate, which is usual.")] = None,
+    solver: Annotated[str | None, typer.Option(help="MPC solver: snopt, ipopt or rti.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the results; results/NAME if left out.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with what was begun in the folder.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what was begun in the folder.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="Episodes at a time; as many as there are cores if left out.")
+    ] = None,
+    executor: Annotated[str, typer.Option(help="Where to compute: processes, serial or dask.")] = "processes",
+    address: Annotated[str | None, typer.Option(help="Of dask: address of the scheduler, tcp://HOST:PORT.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON and nothing else.")] = False,
+) -> None:
+    """Run an experiment of the paper: many patients and seeds, side by side.
+
+    Each episode is written as soon as it has ended. However a run ends, `--resume` goes on where it was, with the same
+    results as if it had never stopped; options that are left out are then those it was begun with.
+    """
+    from mala_drake.experiments.experiment_kind import ExperimentOptions
+    from mala_drake.experiments.experiments import Execution, experiment_kind, run_experiment
+    from mala_drake.reporting.experiment_console import ExperimentConsole
+
+    if resume and overwrite:
+        raise BadInput("--resume", "together with --overwrite", "one of them")
+    kind = experiment_kind(name)
+    options = ExperimentOptions(
+        scenario=scenario,
+        profiles=_names("--profiles", profiles),
+        seeds=_seeds(seeds),
+        episodes=episodes,
+        conditions=_names("--learners", learners),
+        task=task,
+        solver=solver,
+    )
+    folder = out or Path("results") / name
+    execution = Execution(out=folder, resume=resume, overwrite=overwrite, executor=executor, jobs=jobs, address=address)
+    with ExperimentConsole(quiet=as_json) as console:
+        summary = run_experiment(kind, options, execution, watcher=console)
+    if as_json:
+        typer.echo(json.dumps(summary))
+    else:
+        console.show(summary)
+        console.show_files([folder / "summary.json"])
+    raise typer.Exit(0 if _all_done(summary) else 1)
+
+
+def _names(option: str, text: str | None) -> tuple[str, ...] | None:
+    if text is None:
+        return None
+    names = tuple(part.strip() for part in text.split(","))
+    if not all(names):
+        raise BadInput(option, repr(text), "names separated by commas")
+    return names
+
+
+def _seeds(text: str | None) -> tuple[int, ...] | None:
+    """The seeds of `0,1,7` or `0-4`."""
+    if text is None:
+        return None
+    seeds: list[int] = []
+    for part in text.split(","):
+        ends = re.fullmatch(r"\s*(\d{1,9})(?:-(\d{1,9}))?\s*", part)
+        numbers = range(int(ends[1]), int(ends[2] or ends[1]) + 1) if ends else range(0)
+        if not 0 < len(numbers) <= _MOST_SEEDS:
+            raise BadInput("--seeds", repr(text), "whole numbers >= 0, for example 0,1,7 or 0-4")
+        seeds += numbers
+    return tuple(seeds)
+
+
+def _all_done(summary: dict[str, Any]) -> bool:
+    every = [summary, *summary["conditions"].values()]
+    delivered = all(each["totals"]["successes"] == each["totals"]["episodes"] for each in every)
+    return delivered and not summary["unfinished"]
 
 
 @app.command()

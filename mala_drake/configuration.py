@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import re
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin
@@ -35,13 +37,32 @@ def load_typed(schema: type[T], path: str | Path, *, defaults: T) -> T:
         raise BadInput(place, f"not YAML: {getattr(error, 'problem', None) or error}") from None
     if data is None:
         return defaults
+    return _typed(schema, data, text, where=path.name, defaults=defaults)
+
+
+def typed(schema: type[T], data: Mapping[str, Any], *, where: str, defaults: T) -> T:
+    """Puts nested mappings, as a file would hold them, into `schema`; keys that are missing keep their `defaults`.
+
+    Args:
+        schema: a dataclass.
+        data: by field name.
+        where: names the data in errors.
+        defaults: not modified.
+
+    Raises:
+        BadInput: the data do not fit the schema.
+    """
+    return _typed(schema, data, yaml.safe_dump(dict(data)), where=where, defaults=copy.deepcopy(defaults))
+
+
+def _typed(schema: type[T], data: Any, text: str, *, where: str, defaults: T) -> T:
     if not isinstance(data, dict):
-        raise BadInput(path.name, f"a {type(data).__name__}", "a mapping of field names to values")
-    _check_fields(schema, data, path.name)
+        raise BadInput(where, f"a {type(data).__name__}", "a mapping of field names to values")
+    _check_fields(schema, data, where)
     try:
         return yaml_load_typed(schema=schema, data=text, defaults=defaults)
     except (RuntimeError, TypeError, ValueError, AttributeError) as error:
-        raise BadInput(path.name, re.sub(r"\s+", " ", str(error)).strip()) from None
+        raise BadInput(where, re.sub(r"\s+", " ", str(error)).strip()) from None
 
 
 def _check_fields(template: Any, data: Any, where: str) -> None:

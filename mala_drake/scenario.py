@@ -146,17 +146,18 @@ class Scenario:
         return tuple(Shape(o.name, o.x, o.y, o.yaw, o.half_length, o.half_width) for o in self.world.obstacles)
 
 
-def LoadScenario(path: str | Path | None = None) -> Scenario:
+def LoadScenario(path: str | Path | None = None, *, defaults: Scenario | None = None) -> Scenario:
     """Reads and validates a scenario; fields that are missing have their defaults.
 
     Args:
         path: a Drake YAML file; None is the default scenario that comes with the package.
+        defaults: of the fields that are missing, if they are to be others than those of this module.
 
     Raises:
         BadInput: naming file, field, value and what was expected.
     """
     file = Path(path) if path is not None else models_folder() / "default.scenario.yaml"
-    scenario = load_typed(Scenario, file, defaults=Scenario())
+    scenario = load_typed(Scenario, file, defaults=Scenario() if defaults is None else defaults)
     if scenario.ward:
         scenario.ward = str(file.parent / scenario.ward)
     Validate(scenario, where=file.name)

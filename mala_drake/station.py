@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydrake.geometry import Box, Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role
@@ -14,6 +15,7 @@ from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
+from mala_drake.errors import BadInput
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
 from mala_drake.learning.abstract_preference_learner import FloatArray
 from mala_drake.learning.make_learner import make_learner
@@ -72,7 +74,12 @@ def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None) -> Di
 
 
 def StartEpisode(
-    station: Diagram, context: Context, *, episode: int, time: float = 0.0, learner_state: FloatArray | None = None
+    station: Diagram,
+    context: Context,
+    *,
+    episode: int,
+    time: float = 0.0,
+    learner_states: Mapping[str, FloatArray] | None = None,
 ) -> None:
     """Sets a fresh default context up for an episode of the station's run.
 
@@ -81,7 +88,10 @@ def StartEpisode(
         context: from `station.CreateDefaultContext()`.
         episode: its number, from 0.
         time: seconds on the simulation's clock at which it begins, a whole number of ticks.
-        learner_state: what the preference learner has learned before, from `learner_state_of`; None at the beginning.
+        learner_states: what the learners have learned before, from `learner_states_of`; None at the beginning.
+
+    Raises:
+        BadInput: if `learner_states` are those of other learners than the station has.
     """
     context.SetTime(time)
 
@@ -93,16 +103,22 @@ def StartEpisode(
     scheduler.start_at(its_context, episode=episode)
     estimator, its_context = own("state_estimator")
     estimator.SetEpisode(its_context, episode)
-    learner, its_context = own("preference_learner")
-    state = learner.learner_state(its_context) if learner_state is None else learner_state
-    learner.set_learner_state(its_context, state, episode=episode)
+    fresh = learner_states_of(station, context)
+    states = fresh if learner_states is None else learner_states
+    if {name: state.shape for name, state in states.items()} != {name: state.shape for name, state in fresh.items()}:
+        told, expected = (
+            ", ".join(f"{name} ({state.size})" for name, state in each.items()) for each in (states, fresh)
+        )
+        raise BadInput("learner_states", told, f"numbers of {expected}")
+    for name, state in states.items():
+        learner, its_context = own(name)
+        learner.set_learner_state(its_context, state, episode=episode)
 
 
-def learner_state_of(station: Diagram, context: Context) -> FloatArray:
-    """What the preference learner has learned so far in `context`: numbers, to carry to the next episode."""
-    learner: Any = station.GetSubsystemByName("preference_learner")
-    state: FloatArray = learner.learner_state(learner.GetMyContextFromRoot(context))
-    return state
+def learner_states_of(station: Diagram, context: Context) -> dict[str, FloatArray]:
+    """What each learner has learned so far in `context`: numbers by the system's name, to carry to the next episode."""
+    learners: list[Any] = [system for system in station.GetSystems() if hasattr(system, "learner_state")]
+    return {each.get_name(): each.learner_state(each.GetMyContextFromRoot(context)) for each in learners}
 
 
 class _StationBuilder:

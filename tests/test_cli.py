@@ -72,11 +72,11 @@ def test_the_version_is_told(capfd):
 def test_help_lists_the_commands(capfd, arguments):
     status, output, errors = call(capfd, *arguments)
     assert (status, errors) == (0, "")
-    for name in ("run", "plan", "graph", "bench"):
+    for name in ("run", "plan", "graph", "experiment", "bench"):
         assert name in output
 
 
-@pytest.mark.parametrize("command", ["run", "plan", "graph", "bench"])
+@pytest.mark.parametrize("command", ["run", "plan", "graph", "experiment", "bench"])
 def test_each_command_explains_itself(capfd, command):
     status, output, errors = call(capfd, command, "--help")
     assert (status, errors) == (0, "")
@@ -130,6 +130,26 @@ def test_help_does_not_import_drake(tmp_path):
         (["plan", *MEDICATION[::-1]], ["problem_med.pddl", "domain"]),
         (["graph", "--max-depth=-1"], ["--max-depth: -1", ">= 0"]),
         (["graph", "nowhere.yaml"], ["nowhere.yaml", "cannot be read"]),
+        (["experiment", "patience"], ["experiment: 'patience'", "convergence"]),
+        (["experiment", "convergence", "--profiles", "nobody"], ["--profiles: 'nobody'", "safety_first"]),
+        (["experiment", "convergence", "--profiles", ""], ["--profiles: ''", "commas"]),
+        (["experiment", "convergence", "--profiles", "safety_first,safety_first"], ["--profiles", "twice"]),
+        (["experiment", "convergence", "--profiles", "custom"], ["--profiles: 'custom'", "true_weights"]),
+        (["experiment", "convergence", "--seeds", "one"], ["--seeds: 'one'", "whole numbers"]),
+        (["experiment", "convergence", "--seeds", "0.5"], ["--seeds: '0.5'", "whole numbers"]),
+        (["experiment", "convergence", "--seeds=-1"], ["--seeds: '-1'", "whole numbers"]),
+        (["experiment", "convergence", "--seeds", "3-1"], ["--seeds: '3-1'", "whole numbers"]),
+        (["experiment", "convergence", "--seeds", "1,0-2"], ["--seeds", "twice"]),
+        (["experiment", "convergence", "--episodes", "0"], ["--episodes: 0", "from 1"]),
+        (["experiment", "convergence", "--task", "dance"], ["--task: 'dance'", "alternate"]),
+        (["experiment", "convergence", "--solver", "guess"], ["--solver: 'guess'", "snopt"]),
+        (["experiment", "convergence", "--learners", "guess"], ["--learners: 'guess'", "posterior"]),
+        (["experiment", "convergence", "--jobs", "0"], ["--jobs: 0", ">= 1"]),
+        (["experiment", "convergence", "--jobs", "many"], ["--jobs", "integer"]),
+        (["experiment", "convergence", "--executor", "thoughts"], ["--executor: 'thoughts'", "processes"]),
+        (["experiment", "convergence", "--executor", "dask"], ["--address", "scheduler"]),
+        (["experiment", "convergence", "--resume", "--overwrite"], ["--resume", "--overwrite"]),
+        (["experiment", "convergence", "nowhere.yaml"], ["nowhere.yaml", "cannot be read"]),
         (["bench", "patience"], ["bench: 'patience'", "plant", "mpc", "plan"]),
     ],
 )
@@ -165,6 +185,19 @@ def test_a_folder_is_no_file(capfd, tmp_path):
     assert "is a folder" in mistake(capfd, "run", "--html", tmp_path, "--out", tmp_path / "results")
     (tmp_path / "diagram.md").mkdir()
     assert "cannot be written" in mistake(capfd, "graph", "--out", tmp_path / "diagram.md")
+
+
+def test_a_mistake_of_an_experiment_leaves_no_folder(capfd, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mistake(capfd, "experiment", "convergence", "--jobs", "0")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_experiment_is_neither_begun_over_another_one_nor_over_anything_else(capfd, tmp_path):
+    (tmp_path / "file").write_text("kept")
+    assert "cannot be written" in mistake(capfd, "experiment", "convergence", "--out", tmp_path / "file")
+    assert "file" in mistake(capfd, "experiment", "convergence", "--out", tmp_path)
+    assert (tmp_path / "file").read_text() == "kept"
 
 
 @pytest.mark.parametrize("option", ["--out", "--html"])

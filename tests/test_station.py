@@ -125,11 +125,20 @@ def test_learned_weights_are_carried_into_the_next_episode(station):
     context = station.CreateDefaultContext()
     learner = Posterior()
     learned = learner.update(learner.initial_state(), ratings=(3.0, 4.0, 4.5, 4.5, 4.5), features=(0.9,) * 5)
-    mut.StartEpisode(station, context, episode=1, learner_state=learned)
-    assert mut.learner_state_of(station, context) == pytest.approx(learned)
+    mut.StartEpisode(station, context, episode=1, learner_states={"preference_learner": learned})
+    states = mut.learner_states_of(station, context)
+    assert list(states) == ["preference_learner"]
+    assert (states["preference_learner"] == learned).all()
     assert read(station, context, "preference_learner", "preferences").estimate == pytest.approx(
         learner.estimate(learned)
     )
+
+
+@pytest.mark.parametrize("states", [{}, {"preference_learner": np.zeros(2)}, {"another_learner": np.zeros(6)}])
+def test_what_another_stations_learners_have_learned_is_refused(station, states):
+    context = station.CreateDefaultContext()
+    with pytest.raises(BadInput, match=r"learner_states.*expected numbers of preference_learner"):
+        mut.StartEpisode(station, context, episode=1, learner_states=states)
 
 
 def test_abstract_ports_carry_immutable_messages(station):

@@ -90,17 +90,21 @@ def by_criterion(values: Iterable[float]) -> dict[str, float]:
     return dict(zip(CRITERIA, map(float, values), strict=True))
 
 
-def timing(*, wall_seconds: float, mpc_seconds: Sequence[float], plan_seconds: Sequence[float]) -> dict[str, float]:
-    """What an episode took to compute: wall seconds in all, and milliseconds a solve of the MPC and of the planner.
+def timing(
+    *, wall_seconds: float, cpu_seconds: float, mpc_seconds: Sequence[float], plan_seconds: Sequence[float]
+) -> dict[str, float]:
+    """What an episode took to compute: seconds in all, and milliseconds a solve of the MPC and of the planner.
 
     Args:
         wall_seconds: of the whole episode.
+        cpu_seconds: of the whole episode, on all cores together.
         mpc_seconds: of each solve; figures of none are 0.
         plan_seconds: of each replanning; figures of none are 0.
     """
     mpc, plan = (1e3 * np.asarray(seconds if len(seconds) else [0.0]) for seconds in (mpc_seconds, plan_seconds))
     return {
         "wall_s": wall_seconds,
+        "cpu_s": cpu_seconds,
         "mpc_median_ms": float(np.median(mpc)),
         "mpc_p95_ms": float(np.percentile(mpc, 95)),
         "mpc_max_ms": float(mpc.max()),

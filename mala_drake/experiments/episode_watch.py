@@ -74,7 +74,7 @@ class EpisodeWatch:
                 news.append(f"the leg ended: {report.outcome.value} ({report.detail})")
         return news
 
-    def record(self, *, wall_seconds: float) -> EpisodeRecord:
+    def record(self, *, wall_seconds: float, cpu_seconds: float) -> EpisodeRecord:
         """The record of the episode, failed for lack of time when it has not finished."""
         report = self._report()
         ratings: Ratings = self._read("patient", "ratings")
@@ -115,6 +115,7 @@ class EpisodeWatch:
             battery_end=self._charge(),
             timing=timing(
                 wall_seconds=wall_seconds,
+                cpu_seconds=cpu_seconds,
                 mpc_seconds=self._controller.solve_seconds[self._solves :],
                 plan_seconds=self._planner.solve_seconds[self._plans :],
             ),

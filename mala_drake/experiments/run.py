@@ -4,26 +4,19 @@ from __future__ import annotations
 
 import json
 import logging
-import time
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-import numpy as np
 from pydrake.geometry import Meshcat
-from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import Diagram
 
-import mala_drake
-from mala_drake.clock import TICK
-from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeFile, EpisodeRecord, check_writable, plain
-from mala_drake.experiments.episode_watch import EpisodeWatch
-from mala_drake.learning.convergence import convergence_episode
+from mala_drake.experiments.episode import Carried, simulate_episode
+from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeFile, EpisodeRecord, check_writable
+from mala_drake.experiments.run_summary import SUMMARY_FILE, summarise
 from mala_drake.reporting.run_recording import RunRecording
 from mala_drake.scenario import Scenario, Validate
-from mala_drake.station import MakeCareStation, StartEpisode, learner_state_of
-
-SUMMARY_FILE = "summary.json"
+from mala_drake.station import MakeCareStation
 
 
 class Watcher(Protocol):
@@ -99,57 +92,38 @@ def _start_results(options: RunOptions) -> EpisodeFile | None:
 
 
 def _run_episodes(
-    station: Any,
+    station: Diagram,
     scenario: Scenario,
     options: RunOptions,
     watcher: Watcher | None,
     file: EpisodeFile | None,
     recording: RunRecording | None,
 ) -> list[EpisodeRecord]:
-    """One episode after another, each in a fresh context; the learner's state and the clock go on."""
+    """One episode after another, each in a fresh context; what was learned and the clock go on."""
     records: list[EpisodeRecord] = []
-    learner_state, clock = None, 0.0
+    carried = Carried()
     for episode in range(scenario.episodes):
-        context = station.CreateDefaultContext()
-        StartEpisode(station, context, episode=episode, time=clock, learner_state=learner_state)
-        record, clock = _run_episode(station, context, scenario, episode, clock, options, watcher, recording)
-        learner_state = learner_state_of(station, context)
+
+        def on_action(seconds: float, text: str, *, episode: int = episode, began: float = carried.seconds) -> None:
+            if watcher:
+                watcher.on_action(episode, seconds - began, text)
+            if recording:
+                recording.caption(seconds, f"Episode {episode + 1}: {text}")
+
+        record, carried = simulate_episode(
+            station,
+            scenario,
+            episode=episode,
+            carried=carried,
+            realtime_rate=options.realtime_rate,
+            on_action=on_action,
+        )
         records.append(record)
         if file:
             file.append(record)
         if watcher:
             watcher.on_episode(record)
     return records
-
-
-def _run_episode(
-    station: Any,
-    context: Any,
-    scenario: Scenario,
-    episode: int,
-    started: float,
-    options: RunOptions,
-    watcher: Watcher | None,
-    recording: RunRecording | None,
-) -> tuple[EpisodeRecord, float]:
-    """Simulates until the episode is rated and learned from, or its time is up."""
-    wall = time.perf_counter()
-    simulator = Simulator(station, context)
-    simulator.set_target_realtime_rate(options.realtime_rate)
-    simulator.Initialize()
-    watch = EpisodeWatch(station, context, scenario, episode)
-    ticks = round(started / TICK)
-    limit = ticks + round(scenario.episode_time_limit / TICK)
-    while not watch.finished and ticks < limit:
-        ticks += 1  # The watch looks at the ports each tick: every report is seen.
-        simulator.AdvanceTo(ticks * TICK)
-        for text in watch.look():
-            if watcher:
-                watcher.on_action(episode, context.get_time() - started, text)
-            if recording:
-                recording.caption(context.get_time(), f"Episode {episode + 1}: {text}")
-    record = watch.record(wall_seconds=time.perf_counter() - wall)
-    return record, ticks * TICK
 
 
 def _make_meshcat(options: RunOptions) -> Meshcat | None:
@@ -170,51 +144,3 @@ def _start_recording(scenario: Scenario, options: RunOptions, meshcat: Meshcat |
         return None
     title = f"{scenario.task}, patient {scenario.profile_name.replace('_', ' ')}"
     return RunRecording(meshcat, options.html, scenario.load_ward(), title=title)
-
-
-def summarise(scenario: Scenario, records: Sequence[EpisodeRecord]) -> dict[str, Any]:
-    """Totals of a run and its figures by profile, all of it fit for JSON.
-
-    Args:
-        scenario: that was run.
-        records: of its episodes, at least one.
-    """
-    successes = sum(record.success for record in records)
-    profile = {
-        "convergence_episode": convergence_episode(record.distance_to_true for record in records if record.rated),
-        "best_distance": min(record.distance_to_true for record in records),
-        "final_distance": records[-1].distance_to_true,
-        "success_rate": successes / len(records),
-        "plan_variants": sorted({record.plan_variant for record in records if record.success}),
-    }
-    summary: dict[str, Any] = plain(
-        {
-            "version": mala_drake.__version__,
-            "scenario": asdict(scenario),
-            "seed": scenario.random_seed,
-            "totals": _totals(records),
-            "profiles": {scenario.profile_name: profile},
-            "timing": {
-                "wall_s": sum(record.timing["wall_s"] for record in records),
-                "median_episode_wall_s": np.median([record.timing["wall_s"] for record in records]),
-                "mpc_median_ms": np.median([record.timing["mpc_median_ms"] for record in records]),
-            },
-        }
-    )
-    return summary
-
-
-def _totals(records: Sequence[EpisodeRecord]) -> dict[str, Any]:
-    return {
-        "episodes": len(records),
-        "successes": sum(record.success for record in records),
-        "failures": [record.failure for record in records if record.failure],
-        "collisions": sum(record.collisions for record in records),
-        "min_clearance_m": min(record.min_clearance_m for record in records),
-        "max_terminal_error_m": max((e for r in records for e in r.terminal_errors_m), default=None),
-        "max_terminal_yaw_error_rad": max((e for r in records for e in r.terminal_yaw_errors_rad), default=None),
-        "max_terminal_speed_m_s": max((e for r in records for e in r.terminal_speeds_m_s), default=None),
-        "mpc_solves": sum(record.mpc_solves for record in records),
-        "mpc_failures": sum(record.mpc_failures for record in records),
-        "simulated_s": sum(record.sim_time_s for record in records),
-    }

@@ -62,8 +62,12 @@ class ProfileResults:
         """How many runs end with the greatest weight on the patient's own dominant criterion."""
         if self.true_weights is None:
             return None
-        wanted = dominant(self.true_weights)
-        return sum(dominant(run.final.weights_after) == wanted for run in self.runs)
+        wanted = CRITERIA.index(dominant(self.true_weights))
+        # Even weights name no criterion, not the first one.
+        return sum(
+            all(run.final.weights_after[wanted] > weight for weight in _without(run.final.weights_after, wanted))
+            for run in self.runs
+        )
 
     @property
     def episodes(self) -> int:
@@ -116,6 +120,10 @@ def profile_results(results: Results, condition: str) -> tuple[ProfileResults, .
         ProfileResults(condition, profile, results.of(condition, profile), results.true_weights(profile))
         for profile in profiles
     )
+
+
+def _without(weights: Sequence[float], index: int) -> list[float]:
+    return [weight for i, weight in enumerate(weights) if i != index]
 
 
 def dominant(weights: Sequence[float]) -> str:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from mala_drake.errors import BadInput
+from mala_drake.experiments.episode_reader import read_episodes
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.preferences import CRITERIA
@@ -21,7 +21,6 @@ MAIN = ""
 
 _SEED_FOLDER = "seed_"
 _SUMMARY_FILE = "summary.json"
-_PLAIN: Mapping[str, tuple[type, ...]] = {"str": (str,), "int": (int,), "bool": (bool,), "float": (int, float)}
 _MAIN_NAMES = ("full", "default", "main", "posterior")  # What an experiment without a main condition is measured by.
 
 
@@ -126,7 +125,9 @@ def _main_condition(conditions: set[str]) -> str:
 def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
     """The run whose episodes `path` holds; None, with a note, where there is none."""
     place = path.parent.relative_to(folder)
-    records = tuple(_records(path, notes, shown=place / path.name))
+    records, torn = read_episodes(path)
+    if torn:
+        notes.append(f"The last line of {place / path.name} is torn and left out.")
     if not records:
         notes.append(f"{place / path.name} holds no episode.")
         return None
@@ -144,54 +145,7 @@ def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
             raise BadInput(str(path), found, f"{profile}, seed {seed}, as its folder says")
         if record.episode != number:
             raise BadInput(f"{path}, line {number + 1}", f"episode {record.episode}", f"episode {number}")
-    return Run(condition, profile, seed, records)
-
-
-def _records(path: Path, notes: list[str], *, shown: Path) -> Iterator[EpisodeRecord]:
-    try:
-        lines = path.read_bytes().split(b"\n")
-    except OSError as error:
-        raise BadInput(str(path), f"cannot be read ({error.strerror})", "a readable file") from None
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
-        try:
-            data = json.loads(line)
-        except ValueError:
-            if number == len(lines):  # Every whole line ends with a newline: this one was being written.
-                notes.append(f"The last line of {shown} is torn and left out.")
-                return
-            raise BadInput(f"{path}, line {number}", "is not JSON", "one episode a line") from None
-        yield _record(data, where=f"{path}, line {number}")
-
-
-def _record(data: Any, *, where: str) -> EpisodeRecord:
-    """The record of one line; keys that a newer version may have added are passed over."""
-    if not isinstance(data, dict):
-        raise BadInput(where, "is not an object", "an episode")
-    values: dict[str, Any] = {"leg_outcomes": []}  # Not in the file.
-    for item in fields(EpisodeRecord):
-        if item.name in data:
-            values[item.name] = _restored(data[item.name], str(item.type), where=f"{where}: {item.name}")
-        elif item.name not in values and item.default is MISSING and item.default_factory is MISSING:
-            raise BadInput(where, f"has no {item.name!r}", "a whole episode record")
-    return EpisodeRecord(**values)
-
-
-def _restored(value: Any, kind: str, *, where: str) -> Any:
-    """The value as the record has it: what was written as null because it was not finite is NaN again."""
-    if kind == "float" and value is None:
-        return math.nan
-    expected = _PLAIN.get(kind)
-    if expected is not None and (not isinstance(value, expected) or (isinstance(value, bool) and kind != "bool")):
-        raise BadInput(where, repr(value), f"a value of type {kind}")
-    if kind == "dict[str, float]" and isinstance(value, dict):
-        return {key: _restored(item, "float", where=f"{where}.{key}") for key, item in value.items()}
-    if kind.startswith("list[float]") and isinstance(value, list):
-        return [_restored(item, "float", where=where) for item in value]
-    if value is None and "None" not in kind:
-        raise BadInput(where, "null", f"a value of type {kind}")
-    return value
+    return Run(condition, profile, seed, tuple(records))
 
 
 def _missing(runs: list[Run]) -> Iterator[str]:

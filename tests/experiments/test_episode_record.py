@@ -44,7 +44,7 @@ KEYS = [
     "battery_end",
     "timing",
 ]
-TIMING_KEYS = ["wall_s", "mpc_median_ms", "mpc_p95_ms", "mpc_max_ms", "plan_median_ms", "plan_p95_ms"]
+TIMING_KEYS = ["wall_s", "cpu_s", "mpc_median_ms", "mpc_p95_ms", "mpc_max_ms", "plan_median_ms", "plan_p95_ms"]
 
 
 def record(**changes):
@@ -79,7 +79,7 @@ def record(**changes):
         "mismatches": 0,
         "battery_start": 1.0,
         "battery_end": 0.4,
-        "timing": mut.timing(wall_seconds=1.0, mpc_seconds=[0.01], plan_seconds=[0.002]),
+        "timing": mut.timing(wall_seconds=1.0, cpu_seconds=0.5, mpc_seconds=[0.01], plan_seconds=[0.002]),
     }
     return mut.EpisodeRecord(**{**values, **changes})
 
@@ -133,7 +133,7 @@ def test_an_episode_is_rated_by_a_single_rating():
 
 
 def test_timing_is_in_milliseconds_and_nothing_without_solves():
-    times = mut.timing(wall_seconds=2.0, mpc_seconds=[0.001, 0.002, 0.009], plan_seconds=[])
+    times = mut.timing(wall_seconds=2.0, cpu_seconds=1.5, mpc_seconds=[0.001, 0.002, 0.009], plan_seconds=[])
     assert times["wall_s"] == 2.0
     assert times["mpc_median_ms"] == pytest.approx(2.0)
     assert times["mpc_max_ms"] == pytest.approx(9.0)

@@ -47,7 +47,7 @@ def test_watching_changes_nothing_and_tells_each_action_once(station):
 
 def test_an_episode_cut_short_is_a_failure_with_what_was_measured_so_far(station):
     _, watch, _, context = state_after(station, watched=True)
-    record = watch.record(wall_seconds=1.5)
+    record = watch.record(wall_seconds=1.5, cpu_seconds=1.0)
     meter = station.GetSubsystemByName("feature_meter")
     measured = meter.GetOutputPort("features").Eval(meter.GetMyContextFromRoot(context))
     controller = station.GetSubsystemByName("mpc_controller")

@@ -1,0 +1,72 @@
+"""What a run came to: its totals and its figures by profile, as `summary.json` holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+import mala_drake
+from mala_drake.experiments.episode_record import EpisodeRecord, plain
+from mala_drake.learning.convergence import convergence_episode
+from mala_drake.scenario import Scenario
+
+SUMMARY_FILE = "summary.json"
+
+
+def summarise(scenario: Scenario, records: Sequence[EpisodeRecord]) -> dict[str, Any]:
+    """Totals of a run and its figures by profile, all of it fit for JSON.
+
+    Args:
+        scenario: that was run.
+        records: of its episodes, at least one.
+    """
+    successes = sum(record.success for record in records)
+    profile = {
+        "convergence_episode": convergence_episode(record.distance_to_true for record in records if record.rated),
+        "best_distance": min(record.distance_to_true for record in records),
+        "final_distance": records[-1].distance_to_true,
+        "success_rate": successes / len(records),
+        "plan_variants": sorted({record.plan_variant for record in records if record.success}),
+    }
+    summary: dict[str, Any] = plain(
+        {
+            "version": mala_drake.__version__,
+            "scenario": asdict(scenario),
+            "seed": scenario.random_seed,
+            "totals": totals_of(records),
+            "profiles": {scenario.profile_name: profile},
+            "timing": timing_of(records),
+        }
+    )
+    return summary
+
+
+def totals_of(records: Sequence[EpisodeRecord]) -> dict[str, Any]:
+    """What was done and what went wrong in these episodes."""
+    return {
+        "episodes": len(records),
+        "successes": sum(record.success for record in records),
+        "failures": [record.failure for record in records if record.failure],
+        "collisions": sum(record.collisions for record in records),
+        "min_clearance_m": min((record.min_clearance_m for record in records), default=None),
+        "max_terminal_error_m": max((e for r in records for e in r.terminal_errors_m), default=None),
+        "max_terminal_yaw_error_rad": max((e for r in records for e in r.terminal_yaw_errors_rad), default=None),
+        "max_terminal_speed_m_s": max((e for r in records for e in r.terminal_speeds_m_s), default=None),
+        "mpc_solves": sum(record.mpc_solves for record in records),
+        "mpc_failures": sum(record.mpc_failures for record in records),
+        "simulated_s": sum(record.sim_time_s for record in records),
+    }
+
+
+def timing_of(records: Sequence[EpisodeRecord]) -> dict[str, Any]:
+    """What these episodes took to compute, which depends on the machine."""
+    timings = [record.timing for record in records]
+    return {
+        "wall_s": sum(timing["wall_s"] for timing in timings),
+        "cpu_s": sum(timing["cpu_s"] for timing in timings),
+        "median_episode_wall_s": np.median([timing["wall_s"] for timing in timings]) if timings else None,
+        "mpc_median_ms": np.median([timing["mpc_median_ms"] for timing in timings]) if timings else None,
+    }

@@ -1,0 +1,115 @@
+"""What an experiment looks like on a terminal: a bar with the time left, a line a finished run, a table at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+from mala_drake.experiments.episode_record import EpisodeRecord
+from mala_drake.experiments.experiment import MAIN, RunName
+from mala_drake.learning.convergence import convergence_episode
+
+_SPEED_WINDOW = 1800.0  # Seconds over which the speed is averaged that the time left is told from.
+
+
+class ExperimentConsole:
+    """Shows an experiment as it goes, on standard error, and its summary, on standard output."""
+
+    def __init__(self, *, quiet: bool) -> None:
+        """Quiet leaves nothing but what the caller prints itself."""
+        self._errors = Console(stderr=True, quiet=quiet)
+        self._output = Console(quiet=quiet)
+        self._progress = Progress(
+            TextColumn("episodes"),
+            BarColumn(bar_width=30),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("elapsed,"),
+            TimeRemainingColumn(),
+            TextColumn("left"),
+            console=self._errors,
+            transient=True,
+            speed_estimate_period=_SPEED_WINDOW,
+            disable=not self._errors.is_terminal,  # In a file or a pipe, a line for each run says enough.
+        )
+        self._bar = self._progress.add_task("", total=None)
+
+    def __enter__(self) -> ExperimentConsole:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def on_start(self, *, runs: int, episodes: int, done: int) -> None:
+        """Says how much there is to do."""
+        self._progress.update(self._bar, total=episodes, completed=done)
+        before = f", of which {done} are there already" if done else ""
+        self._errors.print(f"{runs} runs, {episodes} episodes{before}", highlight=False)
+
+    def on_episode(self, run: RunName, episode: int) -> None:  # noqa: ARG002 (the contract has it)
+        """Moves the bar."""
+        self._progress.advance(self._bar)
+
+    def on_run(self, run: RunName, records: Sequence[EpisodeRecord]) -> None:
+        """Prints a line for a run that has come to its end."""
+        converged = convergence_episode(record.distance_to_true for record in records if record.rated)
+        delivered = sum(record.success for record in records)
+        line = Text.assemble(
+            f"{run}: ",
+            (f"{delivered} of {len(records)} delivered", "green" if delivered == len(records) else "red"),
+            f", {'converged after ' + str(converged) if converged else 'not converged'}, "
+            f"preferences off by {records[-1].distance_to_true:.3f}, {sum(record.collisions for record in records)} "
+            "collisions ",
+            (f"(computed in {sum(record.timing['wall_s'] for record in records):.0f} s)", "dim"),
+        )
+        self._errors.print(line, soft_wrap=True)
+
+    def on_failure(self, run: RunName, error: str) -> None:
+        """Says which run has failed, and why."""
+        self._errors.print(Text.assemble(f"{run}: ", (f"failed in {error}", "red")), soft_wrap=True)
+
+    def show(self, summary: dict[str, Any]) -> None:
+        """Prints the figures of each condition and patient."""
+        self._progress.stop()
+        table = Table("patient", title=summary["experiment"], title_justify="left")
+        for heading in ("converged", "after", "best d", "final d", "dominant", "plans", "delivered", "hits"):
+            table.add_column(heading, justify="right", no_wrap=True)
+        main = {summary["scenario"]["learner"]["name"]: summary} if summary["condition"] == MAIN else {}
+        for condition, results in {**main, **summary["conditions"]}.items():
+            table.add_row(Text(condition, "bold"))
+            for profile, figures in results["profiles"].items():
+                table.add_row(f" {profile}", *_cells(figures))
+            table.add_section()
+        self._output.print(table)
+        for run, error in summary["unfinished"].items():
+            self._output.print(Text(f"unfinished: {run} (failed in {error})", "red"), soft_wrap=True)
+
+    def show_files(self, paths: Sequence[Path]) -> None:
+        """Prints where the results are."""
+        for path in paths:
+            self._output.print(f"wrote {path}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _cells(figures: dict[str, Any]) -> tuple[str, ...]:
+    """What one patient's runs came to; "after" is the median of the rated episodes to convergence."""
+    right = figures["dominant_right"]
+    return (
+        f"{figures['converged']}/{figures['runs']}",
+        "never" if figures["convergence_episode"] is None else f"{figures['convergence_episode']:g}",
+        f"{figures['best_distance']:.3f}",
+        f"{figures['final_distance']:.3f}",
+        "-" if right is None else f"{right}/{figures['runs']}",
+        str(len(figures["plan_variants"])),
+        f"{figures['successes']}/{figures['episodes']}",
+        str(figures["collisions"]),
+    )

@@ -1,0 +1,64 @@
+"""An episode depends on its scenario, its number and what is carried: not on what a process has computed before."""
+
+from __future__ import annotations
+
+import json
+import pickle
+
+import pytest
+
+from mala_drake.experiments import compute_episode as mut
+from mala_drake.experiments.episode import Carried
+from mala_drake.scenario import Scenario
+
+
+def scenario(**changes):
+    """Long enough to plan, to turn and to drive; the episode fails for lack of time."""
+    return Scenario(episodes=3, task="alternate", episode_time_limit=3.0, **changes)
+
+
+def without_timing(line):
+    return {key: value for key, value in json.loads(line).items() if key != "timing"}
+
+
+@pytest.fixture(scope="module")
+def in_a_row():
+    """Three episodes on one station, each with what was carried into it and out of it."""
+    work, done = [], []
+    carried = Carried()
+    for episode in range(3):
+        work.append(mut.EpisodeWork(scenario(random_seed=2), episode, carried))
+        line, carried = mut.compute_episode(work[-1])
+        done.append((line, carried))
+    return work, done
+
+
+def test_each_episode_is_the_same_alone_on_a_station_of_its_own(in_a_row):
+    for work, (line, carried) in zip(*in_a_row, strict=True):
+        mut._newest = None
+        alone, carried_alone = mut.compute_episode(pickle.loads(pickle.dumps(work)))
+        assert without_timing(alone) == without_timing(line)
+        assert carried_alone == carried
+
+
+def test_another_scenario_in_between_changes_nothing(in_a_row):
+    works, done = in_a_row
+    mut.compute_episode(mut.EpisodeWork(scenario(random_seed=5), 0, Carried()))
+    again, _ = mut.compute_episode(works[1])
+    assert without_timing(again) == without_timing(done[1][0])
+
+
+def test_the_clock_and_what_was_learned_go_on(in_a_row):
+    _, done = in_a_row
+    assert [carried.ticks for _, carried in done] == [15, 30, 45]
+    assert all(list(carried.learners) == ["preference_learner"] for _, carried in done)
+    assert [json.loads(line)["episode"] for line, _ in done] == [0, 1, 2]
+    assert [json.loads(line)["task"] for line, _ in done] == ["medication", "meal", "medication"]
+
+
+def test_the_station_of_a_run_is_kept_for_its_next_episode(in_a_row):
+    works, _ = in_a_row
+    mut.compute_episode(works[0])
+    kept = mut._newest
+    mut.compute_episode(works[1])
+    assert mut._newest is kept
