@@ -213,11 +213,13 @@ def test_another_ward_gets_its_own_numbers(ward: Ward, care: mut.CareTask) -> No
 
 
 def test_other_leg_costs_give_other_numbers(ward: Ward, care: mut.CareTask) -> None:
-    costs = LegCosts(ward, calibration=LegCalibration(coasting_distance=0.0))
+    costs = LegCosts(ward, calibration=LegCalibration(charge_per_metre=LegCalibration().charge_per_metre + 0.001))
     values = mut.CareTask("medication", ward, costs=costs).planning_task.initial_state.values
     way = ("nav-battery", "home", "supply_b")
     difference = values[way] - care.planning_task.initial_state.values[way]
-    assert float(difference) == pytest.approx(0.01 * LegCalibration().coasting_distance, abs=1e-4)
+    leg = costs.between("home", "supply_B")
+    assert leg is not None
+    assert float(difference) == pytest.approx(0.001 * leg.length, abs=1e-4)
 
 
 def test_a_ward_without_the_places_of_the_domain_is_refused(ward: Ward) -> None:

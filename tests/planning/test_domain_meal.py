@@ -113,12 +113,11 @@ def meals() -> list[Meal]:
     for dish, route in (("sandwich", cold), ("salad", cold), ("hot_meal", hot)):
         for side in ("left", "right"):
             places = (*route, f"patient_bed_{side}")
-            for chargers in itertools.product((None, *CHARGERS), repeat=len(places) - 1):
+            for chargers in itertools.product((None, *CHARGERS), repeat=len(places)):
                 visits = sum(charger is not None for charger in chargers)
                 if visits > 2:
                     continue
-                between = zip(chargers, places[1:], strict=True)
-                stops = (places[0], *(stop for pair in between for stop in pair if stop is not None))
+                stops = tuple(s for pair in zip(chargers, places, strict=True) for s in pair if s is not None)
                 for charging in itertools.product((False, True), repeat=visits):
                     found.append(simulate(dish, stops, charging))
     return [each for each in found if each is not None]

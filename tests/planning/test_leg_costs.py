@@ -56,13 +56,34 @@ def test_risk_is_the_integral_of_the_level_over_the_route(ward: Ward, costs: mut
     assert leg.risk == pytest.approx(total / RISK_LENGTH, rel=0.02)
 
 
-def test_charge_is_a_hundredth_a_metre_but_for_the_metres_of_braking(ward: Ward) -> None:
-    calibration = mut.LegCalibration(charge_per_metre=0.01, coasting_distance=1.5)
-    leg = mut.LegCosts(ward, calibration=calibration).between("home", "supply_B")
+def test_charge_is_lost_to_metres_to_speed_and_to_turns(ward: Ward) -> None:
+    nothing = {"charge_per_metre": 0.0, "charge_per_metre_and_speed": 0.0, "charge_per_radian": 0.0}
+
+    def charge(start: tuple[float, float, float] = (0.0, 0.0, 0.0), **constant: float) -> float:
+        leg = mut.LegCosts(ward, calibration=mut.LegCalibration(**nothing | constant)).from_pose(start, "supply_B")
+        assert leg is not None
+        return leg.charge
+
+    route = leg_planner(ward).between("home", "supply_B")
+    assert route is not None
+    path = make_drive_path(route, Congestion(ward))
+    seconds = np.linspace(0.0, path.duration, 20001)
+    speeds = np.interp(seconds, path.times, path.speeds)
+    assert charge(charge_per_metre=0.01) == pytest.approx(0.01 * path.length)
+    by_hand = 0.01 * float(np.trapezoid(speeds**2, seconds))  # A metre is a second times the speed.
+    assert charge(charge_per_metre_and_speed=0.01) == pytest.approx(by_hand, rel=1e-3)
+    heading = float(path.headings[0])
+    straight, turned = (
+        charge((0.0, 0.0, heading), charge_per_radian=0.01),
+        charge((0.0, 0.0, heading + 1.5), charge_per_radian=0.01),
+    )
+    assert turned - straight == pytest.approx(0.015)
+
+
+def test_a_metre_at_cruise_costs_about_a_hundredth(costs: mut.LegCosts) -> None:
+    leg = costs.between("supply_B", "supply_A")
     assert leg is not None
-    assert leg.charge == pytest.approx(0.01 * (leg.length - 1.5))
-    assert calibration.charge(1.0) == pytest.approx(0.005)
-    assert calibration.charge(3.0) == pytest.approx(0.015)
+    assert 0.008 * leg.length < leg.charge < 0.011 * leg.length
 
 
 def test_only_legs_that_come_near_the_bed_are_felt_by_the_patient(costs: mut.LegCosts) -> None:
