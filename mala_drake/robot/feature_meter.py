@@ -23,6 +23,7 @@ from mala_drake.ward.features import (
     FeatureRates,
     FeatureScales,
     approach_error,
+    worst_approach_error,
 )
 from mala_drake.ward.in_place_actions import DELIVERING, InPlaceAction, in_place_action
 from mala_drake.ward.ward_map import Ward
@@ -39,7 +40,7 @@ _Sums = namedview(
         "risk",
         "charge_used",
         "discomfort",
-        "approach_error",  # Of the newest hand-over; 1, the worst, before there is one.
+        "approach_error",  # Of the newest hand-over; the worst before there is one.
         "begun",  # Time at which it began, seconds.
         "charge_at_start",
         "charge",  # At the newest tick, like the position.
@@ -122,7 +123,7 @@ class FeatureMeter(LeafSystem):
     def _begin(self, context: Context, sums: Any, task: Task) -> None:
         sums[:] = 0.0
         sums.task = task.sequence
-        sums.approach_error = 1.0
+        sums.approach_error = worst_approach_error(task.name)
         sums.begun = context.get_time()
         sums.charge_at_start = sums.charge = self._charge.Eval(context)[0]
         sums.x, sums.y = self._robot_state.Eval(context)[:2]

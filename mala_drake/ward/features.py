@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.preferences import CRITERIA
 from mala_drake.ward.congestion import RISK_LENGTH, Congestion
+from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import Ward
 
@@ -89,3 +90,8 @@ def approach_error(pose: tuple[float, float, float], ideal: tuple[float, float, 
     distance = min(math.dist(pose[:2], ideal[:2]) / 4.0, 1.0)
     turn = abs(math.remainder(pose[2] - ideal[2], math.tau)) / math.pi
     return 0.5 * distance + 0.5 * turn
+
+
+def worst_approach_error(task: str) -> float:
+    """The approach error of a task that has handed nothing over: the worst pose and, of a meal, the worst looks."""
+    return 1.0 + (max(dish.presentation_error for dish in DISHES.values()) if task == "meal" else 0.0)

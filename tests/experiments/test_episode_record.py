@@ -212,3 +212,16 @@ def test_a_file_without_permission_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(mut.os, "access", lambda *_: False)
     with pytest.raises(BadInput, match="permission denied"):
         mut.check_writable(tmp_path / "file")
+
+
+@pytest.mark.parametrize(
+    ("names", "variant"),
+    [
+        (("choose_salad", "go_to_pantry", "approach_to_left_side", "deliver_on_bedside_table_left"), "salad/left"),
+        (("choose_sandwich", "choose_hot_meal", "approach_to_left_side", "approach_to_right_side"), "hot_meal/right"),
+        (("choose_sandwich", "collect_ingredient"), "sandwich/none"),
+        ((), "none/none"),
+    ],
+)
+def test_the_variant_of_a_meal_is_its_dish_and_the_bedside(names, variant):
+    assert mut.plan_variant([f"({name} robot1)" for name in names], "meal") == variant

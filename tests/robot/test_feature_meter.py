@@ -9,6 +9,7 @@ import mala_drake.robot.feature_meter as mut
 from mala_drake.clock import METER_OFFSET, TICK
 from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
 from mala_drake.ward.congestion import Congestion
+from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.drive_path import make_drive_path
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, FeatureRates, FeatureScales, approach_error
 from mala_drake.ward.legs import leg_planner
@@ -23,11 +24,11 @@ def ward():
 class Stage:
     """A meter whose inputs are in the test's hands, at the beginning of task 1."""
 
-    def __init__(self, ward, *, start=(0.0, 0.0, 0.0), charge=1.0, **options):
+    def __init__(self, ward, *, start=(0.0, 0.0, 0.0), charge=1.0, task="medication", **options):
         self.meter = mut.FeatureMeter(ward, **options)
         self.simulator = Simulator(self.meter)
         self.context = self.simulator.get_mutable_context()
-        self.task = self._fix("task", Value(Task(1, "medication")))
+        self.task = self._fix("task", Value(Task(1, task)))
         self.report = self._fix("task_report", Value(TaskReport()))
         self.action = self._fix("action", Value(Action()))
         self.robot_state = self._fix("robot_state", [*start, 0.0, 0.0, 0.0])
@@ -40,13 +41,13 @@ class Stage:
     def output(self, name):
         return self.meter.GetOutputPort(name).Eval(self.context)
 
-    def tick(self, *, pose=None, charge=None, action=None):
+    def tick(self, *, pose=None, charge=None, action=None, arguments=()):
         if pose is not None:
             self.robot_state.GetMutableData().get_mutable_value().SetFromVector([*pose, 0.0, 0.0, 0.0])
         if charge is not None:
             self.charge.GetMutableData().get_mutable_value().SetFromVector([charge])
         if action is not None:
-            self.action.GetMutableData().set_value(Action(1, ActionKind.IN_PLACE, action))
+            self.action.GetMutableData().set_value(Action(1, ActionKind.IN_PLACE, action, arguments))
         self.simulator.AdvanceTo(self.context.get_time() + TICK)
 
     def finish(self, **report):
@@ -123,6 +124,20 @@ def test_without_a_hand_over_the_approach_is_the_worst(ward):
     stage = Stage(ward)
     stage.tick()
     assert stage.measured()["approach_error"] == 1.0
+
+
+@pytest.mark.parametrize("dish", DISHES)
+def test_the_looks_of_a_dish_count_with_the_pose_it_is_handed_over_from(ward, dish):
+    stage = Stage(ward, task="meal")
+    stage.tick(pose=(0.3, 0.1, 0.4), action="deliver_on_bedside_table_left", arguments=("robot1", dish))
+    by_hand = approach_error((0.3, 0.1, 0.4), IDEAL_HAND_OVER) + DISHES[dish].presentation_error
+    assert stage.measured()["approach_error"] == pytest.approx(by_hand)
+
+
+def test_a_meal_that_is_not_served_looks_worse_than_any(ward):
+    stage = Stage(ward, task="meal")
+    stage.tick()
+    assert stage.measured()["approach_error"] > max(dish.presentation_error for dish in DISHES.values()) + 0.7
 
 
 def test_another_ideal_can_be_wanted(ward):

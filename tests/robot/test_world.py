@@ -43,7 +43,7 @@ class Stage:
         self.item_positions = self._fix("item_positions", self.positions.ravel())
         state = np.zeros(PLANT_STATE_SIZE)
         state[[QW, QZ, X, Y]] = math.cos(BASE[2] / 2), math.sin(BASE[2] / 2), BASE[0], BASE[1]
-        self._fix("plant_state", state)
+        self.plant_state = self._fix("plant_state", state)
         self._fix("arm_state", [*STOWED, 0.0, 0.0, 0.0])
 
     def _fix(self, name, value):
@@ -59,9 +59,10 @@ class Stage:
         self.positions[self.names.index(item)] = position
         self.item_positions.GetMutableData().get_mutable_value().SetFromVector(self.positions.ravel())
 
-    def begin(self, name, place="pharmacy_north", kind=ActionKind.IN_PLACE):
+    def begin(self, name, place="pharmacy_north", kind=ActionKind.IN_PLACE, arguments=()):
         self.sequence += 1
-        self.action.GetMutableData().set_value(Action(self.sequence, kind, name, ("robot1",), place, place))
+        arguments = ("robot1", *arguments)
+        self.action.GetMutableData().set_value(Action(self.sequence, kind, name, arguments, place, place))
         self.tick()
 
     def hold(self, *held):
@@ -260,3 +261,80 @@ def test_another_request_makes_another_box_correct(make_stage):
     stage.begin("check_medication_correct")
     stage.end()
     assert ("correct-medication", "robot1") in stage.facts()
+
+
+@pytest.fixture
+def kitchen(ward, make_stage):
+    """A world with a kitchen in which a salad has been chosen and collected."""
+    stage = make_stage(items=all_items(ward, ("meal",)), wrong_item_probability=1.0)
+    stage.begin("choose_salad", "home")
+    stage.end()
+    for pad, kind in enumerate(("nuts", "vegetables")):
+        stage.begin("collect_ingredient", "pantry", arguments=("pantry", kind))
+        assert stage.output("handed_item").item == f"pantry/{kind}"
+        stage.hold(*((f"pantry/{each}", i) for i, each in enumerate(("nuts", "vegetables")[: pad + 1])))
+        stage.end()
+    return stage
+
+
+def predicates(stage):
+    return {atom[0] for atom in stage.output("world_facts").atoms}
+
+
+def test_ingredients_are_collected_as_they_are_and_leave_the_stock(kitchen):
+    facts = kitchen.output("world_facts").atoms
+    assert ("collected_ingredient", "robot1", "nuts") in facts
+    assert ("collected_ingredient", "robot1", "vegetables") in facts
+    assert ("ingredient_available", "nuts", "pantry") not in facts
+    assert ("ingredient_available", "vegetables", "pantry") in facts  # The one in reserve.
+    assert "missing_ingredient" not in predicates(kitchen)
+
+
+def test_what_is_done_to_a_meal_is_established_when_it_has_succeeded(kitchen):
+    kitchen.begin("check_ingredients", "prep_station", arguments=("salad",))
+    assert "ingredients_checked" not in predicates(kitchen)
+    kitchen.end()
+    assert {"ingredients_checked", "ingredients_safe"} <= predicates(kitchen)
+    kitchen.begin("wash_ingredients", "prep_station")
+    kitchen.end(Outcome.NOT_THERE)
+    assert "ingredients_washed" not in predicates(kitchen)
+
+
+def test_an_ingredient_lost_on_the_way_is_missed_with_all_that_was_done_to_it(kitchen):
+    kitchen.begin("check_ingredients", "prep_station", arguments=("salad",))
+    kitchen.end()
+    kitchen.place("pantry/nuts", (0.0, 18.0, 0.05))
+    kitchen.tick()
+    assert ("missing_ingredient", "robot1", "nuts") in kitchen.output("world_facts").atoms
+    assert "ingredients_checked" not in predicates(kitchen)
+
+
+def test_an_ingredient_out_of_stock_is_not_handed_over(kitchen):
+    kitchen.hold(("pantry/vegetables", 1))
+    kitchen.begin("collect_ingredient", "pantry", arguments=("pantry", "nuts"))
+    assert kitchen.output("handed_item").item == ""
+
+
+def test_a_finished_meal_can_be_delivered_at_a_bedside_only(kitchen, ward):
+    for name in ("check_palatability", "assemble"):
+        kitchen.begin(name, "quality_check", arguments=("salad",))
+        kitchen.end()
+    assert "can_be_deliverable" not in predicates(kitchen)
+    bed = ward.place["patient_bed_left"]
+    state = kitchen.plant_state.GetMutableData().get_mutable_value()
+    moved = state.get_value().copy()
+    moved[[X, Y]] = bed.x, bed.y
+    moved[[QW, QZ]] = 1.0, 0.0
+    state.SetFromVector(moved)
+    hanging = hanging_positions((bed.x, bed.y, 0.0), STOWED)
+    for pad, kind in enumerate(("nuts", "vegetables")):
+        kitchen.place(f"pantry/{kind}", hanging[pad])
+    kitchen.tick()
+    assert "can_be_deliverable" in predicates(kitchen)
+
+
+def test_the_next_task_begins_with_no_dish(kitchen):
+    kitchen.task.GetMutableData().set_value(Task(2, "meal", 1))
+    kitchen.tick()
+    assert "meal_to_prepare" not in predicates(kitchen)
+    assert "cross-contamination-risk" in predicates(kitchen)

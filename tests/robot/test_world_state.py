@@ -77,6 +77,17 @@ def test_a_dispenser_has_nothing_that_is_not_kept_there_or_was_taken(full, items
     assert choose(emptied, items, place="pharmacy_south") is not None
 
 
+def test_ingredients_are_what_they_look_like_and_the_first_of_a_kind_is_taken():
+    kept = all_items(LoadWard(), ("meal",))
+    state = mut.WorldState(stock=tuple(item.name for item in kept), mistakes=("med_insulin",))
+    for seed in range(20):
+        taken = choose(state, kept, kind="vegetables", place="pantry", seed=seed, wrong_probability=1.0)
+        assert taken.name == "pantry/vegetables"
+    emptied = replace(state, stock=tuple(name for name in state.stock if name != "pantry/vegetables"))
+    assert choose(emptied, kept, kind="vegetables", place="pantry").name == "pantry/vegetables_2"
+    assert choose(emptied, kept, kind="chicken", place="pantry") is None
+
+
 def test_wrong_items_come_about_as_often_as_they_should(full, items):
     draws = 2000
     found = Counter(choose(full, items, seed=seed, wrong_probability=0.2).kind for seed in range(draws))

@@ -15,3 +15,8 @@ def test_the_better_a_dish_looks_the_more_it_takes():
     sandwich, salad, hot_meal = (mut.DISHES[name] for name in ("sandwich", "salad", "hot_meal"))
     assert sandwich.presentation_error > salad.presentation_error > hot_meal.presentation_error >= 0.0
     assert salad.assembling > sandwich.assembling
+
+
+def test_nobody_asks_of_medicine_that_it_looks_good():
+    assert mut.presentation_error("") == mut.presentation_error("med_insulin") == 0.0
+    assert mut.presentation_error("salad") == mut.DISHES["salad"].presentation_error

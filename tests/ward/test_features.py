@@ -84,3 +84,8 @@ def test_the_right_bedside_is_the_better_approach(ward):
         return mut.approach_error((place.x, place.y, place.yaw), mut.IDEAL_HAND_OVER)
 
     assert error("patient_bed_right") < error("patient_bed_left")
+
+
+def test_a_task_that_hands_nothing_over_has_the_worst_approach():
+    assert mut.worst_approach_error("medication") == 1.0
+    assert all(mut.worst_approach_error("meal") >= 1.0 + dish.presentation_error for dish in mut.DISHES.values())
