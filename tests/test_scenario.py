@@ -180,10 +180,10 @@ def test_a_place_where_the_robot_does_not_fit_is_refused(tmp_path, plain_map, na
 
 
 def test_a_place_may_be_as_near_to_furniture_as_the_robot_is_wide(tmp_path, plain_map):
-    east_face_of_fridge = -4.9 - 0.5
-    near = changed(plain_map, move("fridge", east_face_of_fridge - BODY_RADIUS - 0.01, 17.5))
+    east_face_of_fridge = -7.1 + 0.5
+    near = changed(plain_map, move("fridge", east_face_of_fridge + BODY_RADIUS + 0.01, 17.5))
     load(tmp_path, with_map(tmp_path, near))
-    too_near = changed(plain_map, move("fridge", east_face_of_fridge - BODY_RADIUS + 0.01, 17.5))
+    too_near = changed(plain_map, move("fridge", east_face_of_fridge + BODY_RADIUS - 0.01, 17.5))
     assert "fridge_body is 0.27 m" in refusal(tmp_path, with_map(tmp_path, too_near))
 
 
