@@ -55,7 +55,11 @@ class SensitivityAnalysis:
         self._kinks = KinkDistances(self._interior_point.functions)
 
     def polish(self, solution: Solution, initial_state: ArrayLike, parameters: MpcParameters) -> KktPoint:
-        """The point of the central path next to a solution of any solver; see `InteriorPoint.polish`."""
+        """The point of the central path next to a solution of any solver; see `InteriorPoint.polish`.
+
+        A solver with hard clearance solves another problem where that constraint presses: the point is then that of the
+        penalty's own solution, and its `distance` from the solver's tells.
+        """
         return self._interior_point.polish(solution.controls, initial_state, parameters, duals=solution.control_duals)
 
     def regularity(self, point: KktPoint) -> Regularity:

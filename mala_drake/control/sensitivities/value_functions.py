@@ -1,8 +1,9 @@
 """V_theta, Q_theta and pi_theta from one optimal control problem (paper, eq. MPC:Pi and MPC:Q).
 
 Q_theta(s, a) is the problem with u_0 = a as one more constraint: V_theta(s) = min_a Q_theta(s, a), attained by
-pi_theta(s). Gradients follow from the envelope theorem: they are the partial derivatives of the Lagrange function, with
-the multipliers of the solution, and need no sensitivity of it.
+pi_theta(s). Both are found by local search: with several ways round an obstacle they are those of the way found, and a
+Q below V tells that V's solver took the longer one. Gradients follow from the envelope theorem: they are the partial
+derivatives of the Lagrange function, with the multipliers of the solution, and need no sensitivity of it.
 """
 
 from __future__ import annotations
