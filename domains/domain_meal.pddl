@@ -54,7 +54,8 @@
     ;; Legs.
     (nav-time ?from ?to - location)                ; seconds
     (location-safety ?from ?to - location)         ; congestion risk rho collected on the way
-    (nav-battery ?from ?to - location)             ; charge used
+    (nav-charge ?from ?to - location)              ; charge used
+    (nav-battery ?from ?to - location)             ; charge to count on: at least what has been seen to be used
     (proximity-feature ?from ?to - location)       ; discomfort of the patient
     (nearest-charger-battery ?l - location)        ; charge needed from there to the nearest charger
     (approach-feature ?b - bedside)                ; how far from the ideal hand-over pose
@@ -162,7 +163,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from pantry) (feature-per-second))
         (* (w1) (location-safety ?from pantry) (feature-per-risk))
-        (* (w2) (nav-battery ?from pantry) (feature-per-charge))
+        (* (w2) (nav-charge ?from pantry) (feature-per-charge))
         (* (w3) (proximity-feature ?from pantry) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from pantry)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from pantry)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -183,7 +184,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from fridge) (feature-per-second))
         (* (w1) (location-safety ?from fridge) (feature-per-risk))
-        (* (w2) (nav-battery ?from fridge) (feature-per-charge))
+        (* (w2) (nav-charge ?from fridge) (feature-per-charge))
         (* (w3) (proximity-feature ?from fridge) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from fridge)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from fridge)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -203,7 +204,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from prep_station) (feature-per-second))
         (* (w1) (location-safety ?from prep_station) (feature-per-risk))
-        (* (w2) (nav-battery ?from prep_station) (feature-per-charge))
+        (* (w2) (nav-charge ?from prep_station) (feature-per-charge))
         (* (w3) (proximity-feature ?from prep_station) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from prep_station)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from prep_station)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -223,7 +224,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from stove) (feature-per-second))
         (* (w1) (location-safety ?from stove) (feature-per-risk))
-        (* (w2) (nav-battery ?from stove) (feature-per-charge))
+        (* (w2) (nav-charge ?from stove) (feature-per-charge))
         (* (w3) (proximity-feature ?from stove) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from stove)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from stove)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -243,7 +244,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from quality_check) (feature-per-second))
         (* (w1) (location-safety ?from quality_check) (feature-per-risk))
-        (* (w2) (nav-battery ?from quality_check) (feature-per-charge))
+        (* (w2) (nav-charge ?from quality_check) (feature-per-charge))
         (* (w3) (proximity-feature ?from quality_check) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from quality_check)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from quality_check)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -263,7 +264,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from charge_main) (feature-per-second))
         (* (w1) (location-safety ?from charge_main) (feature-per-risk))
-        (* (w2) (nav-battery ?from charge_main) (feature-per-charge))
+        (* (w2) (nav-charge ?from charge_main) (feature-per-charge))
         (* (w3) (proximity-feature ?from charge_main) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -283,7 +284,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from charge_backup) (feature-per-second))
         (* (w1) (location-safety ?from charge_backup) (feature-per-risk))
-        (* (w2) (nav-battery ?from charge_backup) (feature-per-charge))
+        (* (w2) (nav-charge ?from charge_backup) (feature-per-charge))
         (* (w3) (proximity-feature ?from charge_backup) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -309,7 +310,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from patient_bed_left) (feature-per-second))
         (* (w1) (location-safety ?from patient_bed_left) (feature-per-risk))
-        (* (w2) (nav-battery ?from patient_bed_left) (feature-per-charge))
+        (* (w2) (nav-charge ?from patient_bed_left) (feature-per-charge))
         (* (w3) (proximity-feature ?from patient_bed_left) (feature-per-discomfort))
         (* (w4) (approach-feature patient_bed_left) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_left)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
@@ -334,7 +335,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from patient_bed_right) (feature-per-second))
         (* (w1) (location-safety ?from patient_bed_right) (feature-per-risk))
-        (* (w2) (nav-battery ?from patient_bed_right) (feature-per-charge))
+        (* (w2) (nav-charge ?from patient_bed_right) (feature-per-charge))
         (* (w3) (proximity-feature ?from patient_bed_right) (feature-per-discomfort))
         (* (w4) (approach-feature patient_bed_right) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_right)) 0.15) (increase (stage_cost) (* (w2) 0.5)))

@@ -46,7 +46,8 @@
     ;; Legs.
     (nav-time ?from ?to - location)                ; seconds
     (location-safety ?from ?to - location)         ; congestion risk rho collected on the way
-    (nav-battery ?from ?to - location)             ; charge used
+    (nav-charge ?from ?to - location)              ; charge used
+    (nav-battery ?from ?to - location)             ; charge to count on: at least what has been seen to be used
     (proximity-feature ?from ?to - location)       ; discomfort of the patient
     (nearest-charger-battery ?l - location)        ; charge needed from there to the nearest charger
     (approach-feature ?b - bedside)                ; how far from the ideal hand-over pose
@@ -79,7 +80,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from pharmacy_north) (feature-per-second))
         (* (w1) (location-safety ?from pharmacy_north) (feature-per-risk))
-        (* (w2) (nav-battery ?from pharmacy_north) (feature-per-charge))
+        (* (w2) (nav-charge ?from pharmacy_north) (feature-per-charge))
         (* (w3) (proximity-feature ?from pharmacy_north) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_north)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_north)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -99,7 +100,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from pharmacy_south) (feature-per-second))
         (* (w1) (location-safety ?from pharmacy_south) (feature-per-risk))
-        (* (w2) (nav-battery ?from pharmacy_south) (feature-per-charge))
+        (* (w2) (nav-charge ?from pharmacy_south) (feature-per-charge))
         (* (w3) (proximity-feature ?from pharmacy_south) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_south)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from pharmacy_south)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -119,7 +120,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from supply_a) (feature-per-second))
         (* (w1) (location-safety ?from supply_a) (feature-per-risk))
-        (* (w2) (nav-battery ?from supply_a) (feature-per-charge))
+        (* (w2) (nav-charge ?from supply_a) (feature-per-charge))
         (* (w3) (proximity-feature ?from supply_a) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_a)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_a)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -139,7 +140,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from supply_b) (feature-per-second))
         (* (w1) (location-safety ?from supply_b) (feature-per-risk))
-        (* (w2) (nav-battery ?from supply_b) (feature-per-charge))
+        (* (w2) (nav-charge ?from supply_b) (feature-per-charge))
         (* (w3) (proximity-feature ?from supply_b) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_b)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from supply_b)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -159,7 +160,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from charge_main) (feature-per-second))
         (* (w1) (location-safety ?from charge_main) (feature-per-risk))
-        (* (w2) (nav-battery ?from charge_main) (feature-per-charge))
+        (* (w2) (nav-charge ?from charge_main) (feature-per-charge))
         (* (w3) (proximity-feature ?from charge_main) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_main)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -179,7 +180,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from charge_backup) (feature-per-second))
         (* (w1) (location-safety ?from charge_backup) (feature-per-risk))
-        (* (w2) (nav-battery ?from charge_backup) (feature-per-charge))
+        (* (w2) (nav-charge ?from charge_backup) (feature-per-charge))
         (* (w3) (proximity-feature ?from charge_backup) (feature-per-discomfort))))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
       (when (< (- (battery-soc ?r) (nav-battery ?from charge_backup)) 0.25) (increase (stage_cost) (* (w2) 0.2)))
@@ -202,7 +203,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from patient_bed_left) (feature-per-second))
         (* (w1) (location-safety ?from patient_bed_left) (feature-per-risk))
-        (* (w2) (nav-battery ?from patient_bed_left) (feature-per-charge))
+        (* (w2) (nav-charge ?from patient_bed_left) (feature-per-charge))
         (* (w3) (proximity-feature ?from patient_bed_left) (feature-per-discomfort))
         (* (w4) (approach-feature patient_bed_left) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_left)) 0.15) (increase (stage_cost) (* (w2) 0.5)))
@@ -224,7 +225,7 @@
       (increase (stage_cost) (+
         (* (w0) (nav-time ?from patient_bed_right) (feature-per-second))
         (* (w1) (location-safety ?from patient_bed_right) (feature-per-risk))
-        (* (w2) (nav-battery ?from patient_bed_right) (feature-per-charge))
+        (* (w2) (nav-charge ?from patient_bed_right) (feature-per-charge))
         (* (w3) (proximity-feature ?from patient_bed_right) (feature-per-discomfort))
         (* (w4) (approach-feature patient_bed_right) (feature-per-error))))
       (when (< (- (battery-soc ?r) (nav-battery ?from patient_bed_right)) 0.15) (increase (stage_cost) (* (w2) 0.5)))

@@ -62,21 +62,6 @@ class Task(Message):
 
 
 @dataclass(frozen=True, slots=True)
-class TaskReport(Message):
-    """What became of the task `sequence`; `failure` is empty on success."""
-
-    sequence: int = 0
-    finished: bool = False
-    success: bool = False
-    failure: str = ""
-    actions: tuple[str, ...] = ()
-    plan_cost: float = 0.0  # Of the first plan, at the planning weights.
-    predicted_features: tuple[float, ...] = (0.0,) * 5  # Summed over executed actions, as predicted at dispatch.
-    replans: int = 0
-    mismatches: int = 0
-
-
-@dataclass(frozen=True, slots=True)
 class Action(Message):
     """One planned action on its way to the layer that executes it.
 
@@ -94,6 +79,23 @@ class Action(Message):
     def text(self) -> str:
         """The action as PDDL writes it, `(name arg ...)`."""
         return "(" + " ".join((self.name, *self.arguments)) + ")"
+
+
+@dataclass(frozen=True, slots=True)
+class TaskReport(Message):
+    """What became of the task `sequence`; `failure` is empty on success."""
+
+    sequence: int = 0
+    finished: bool = False
+    success: bool = False
+    failure: str = ""
+    actions: tuple[str, ...] = ()
+    plan_cost: float = 0.0  # Of the first plan, at the planning weights.
+    predicted_features: tuple[float, ...] = (0.0,) * 5  # Summed over executed actions, as predicted at dispatch.
+    replans: int = 0
+    mismatches: int = 0
+    last_action: Action = Action()  # The newest of `actions`, and how it ended.
+    last_outcome: Outcome = Outcome.RUNNING
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,6 +228,36 @@ class Preferences(Message):
     planning: tuple[float, ...] = (0.2,) * 5
     estimate: tuple[float, ...] = (0.2,) * 5
     deviation: tuple[float, ...] | None = None
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ActionFeatures(Message):
+    """What a finished action really cost, unscaled, from its dispatch to the next one's.
+
+    Seconds, risk, charge used and discomfort; for a hand-over also the approach error of the pose, without the looks of
+    a dish.
+    """
+
+    action: Action = Action()
+    outcome: Outcome = Outcome.RUNNING
+    duration: float = 0.0
+    risk: float = 0.0
+    charge_used: float = 0.0
+    discomfort: float = 0.0
+    approach_error: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedCosts(Message):
+    """The numbers that actions are predicted by, corrected by what actions really cost.
+
+    `values` are ground fluents as in PDDL, and what they are believed to be. `leg_scales` tell how many times the
+    predicted time, risk, charge and discomfort legs take in general. `updates` counts the actions learned from.
+    """
+
+    values: tuple[tuple[Atom, float], ...] = ()
+    leg_scales: tuple[float, ...] = (1.0,) * 4
     updates: int = 0
 
 

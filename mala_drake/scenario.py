@@ -90,6 +90,7 @@ class PlannerConfig:
 
     max_actions: int = 60  # Actions of one task after which it has failed: K of the paper.
     max_expansions: int = 200_000  # Of one search.
+    learned_costs: bool = True  # Whether what actions really cost corrects what the planner predicts.
 
 
 @dataclass

@@ -17,7 +17,9 @@ from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
 from mala_drake.errors import BadInput
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
-from mala_drake.learning.abstract_preference_learner import FloatArray
+from mala_drake.learning.abstract_learner import FloatArray
+from mala_drake.learning.cost_estimator import CostEstimator
+from mala_drake.learning.cost_learner import CostLearner
 from mala_drake.learning.make_learner import make_learner
 from mala_drake.learning.preference_learner import PreferenceLearner
 from mala_drake.patient.patient import Patient
@@ -232,7 +234,7 @@ class _StationBuilder:
         self._feature_meter = self._add("feature_meter", FeatureMeter(ward))
 
     def add_learning(self) -> None:
-        """The patient, and who learns from the ratings."""
+        """The patient, who learns from the ratings, and who learns what actions cost."""
         scenario = self._scenario
         self._patient = self._add(
             "patient",
@@ -248,6 +250,10 @@ class _StationBuilder:
             "preference_learner",
             PreferenceLearner(learner=make_learner(scenario.learner), seed=scenario.random_seed),
         )
+        self._cost_learner = None
+        if scenario.planner.learned_costs:
+            estimator = CostEstimator(self._task_planner.predictions)
+            self._cost_learner = self._add("cost_learner", CostLearner(learner=estimator))
 
     def connect(self) -> None:
         """Wires everything, source by source."""
@@ -283,6 +289,9 @@ class _StationBuilder:
         # What everybody senses.
         for name, port in (("plant_state", base_state), ("arm_state", arm_state)):
             self._fan_out(name, port)
+        if self._cost_learner is not None:
+            self._wire(self._feature_meter, "action_features", self._cost_learner)
+            self._wire(self._cost_learner, "learned_costs", self._task_planner)
         self._fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
         self._fan_out("charge", self._battery.GetOutputPort("charge"))
         self._fan_out("item_positions", self._item_positions.GetOutputPort("item_positions"))

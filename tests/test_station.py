@@ -34,6 +34,7 @@ OURS = [
     "gyroscopic_effect",
     "patient",
     "preference_learner",
+    "cost_learner",
 ]
 
 
@@ -125,10 +126,10 @@ def test_learned_weights_are_carried_into_the_next_episode(station):
     context = station.CreateDefaultContext()
     learner = Posterior()
     learned = learner.update(learner.initial_state(), ratings=(3.0, 4.0, 4.5, 4.5, 4.5), features=(0.9,) * 5)
-    mut.StartEpisode(station, context, episode=1, learner_states={"preference_learner": learned})
-    states = mut.learner_states_of(station, context)
-    assert list(states) == ["preference_learner"]
-    assert (states["preference_learner"] == learned).all()
+    states = {**mut.learner_states_of(station, context), "preference_learner": learned}
+    mut.StartEpisode(station, context, episode=1, learner_states=states)
+    assert list(mut.learner_states_of(station, context)) == ["preference_learner", "cost_learner"]
+    assert mut.learner_states_of(station, context)["preference_learner"] == pytest.approx(learned)
     assert read(station, context, "preference_learner", "preferences").estimate == pytest.approx(
         learner.estimate(learned)
     )

@@ -3,6 +3,8 @@
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner
 from mala_drake.learning.bandit import Bandit
 from mala_drake.learning.convergence import CONVERGED_DISTANCE, convergence_episode, preference_distance
+from mala_drake.learning.cost_estimator import CostEstimator
+from mala_drake.learning.cost_learner import CostLearner
 from mala_drake.learning.fixed_weights import FixedWeights
 from mala_drake.learning.information_bound import efficiency, weight_bound
 from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
@@ -17,6 +19,8 @@ __all__ = [
     "LEARNER_NAMES",
     "AbstractPreferenceLearner",
     "Bandit",
+    "CostEstimator",
+    "CostLearner",
     "FixedWeights",
     "Posterior",
     "PreferenceLearner",

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from typing import Any
+from abc import abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from mala_drake.errors import BadInput
+from mala_drake.learning.abstract_learner import AbstractLearner, FloatArray
 
-FloatArray = npt.NDArray[np.float64]
+__all__ = ["AbstractPreferenceLearner", "FloatArray", "rated"]
 
 
-class AbstractPreferenceLearner(ABC):
+class AbstractPreferenceLearner(AbstractLearner):
     """Turns ratings into preference weights.
 
     A learner object holds its settings and never changes; what it has learned is one vector of numbers, its state,
@@ -27,10 +26,6 @@ class AbstractPreferenceLearner(ABC):
     """
 
     __slots__ = ()
-
-    @abstractmethod
-    def initial_state(self) -> FloatArray:
-        """The state before any rating: (k,), with the same k for all states of one learner."""
 
     @abstractmethod
     def update(self, state: FloatArray, *, ratings: Sequence[float | None], features: Sequence[float]) -> FloatArray:
@@ -62,27 +57,6 @@ class AbstractPreferenceLearner(ABC):
     @abstractmethod
     def planning_weights(self, state: FloatArray, generator: np.random.Generator) -> FloatArray:
         """Weights to plan the next episode with, explored by drawing from `generator`: (5,), on the simplex."""
-
-    def save(self, state: FloatArray) -> dict[str, Any]:
-        """The state as JSON can hold it; `restore` gives it back bit for bit."""
-        return {"learner": type(self).__name__, "state": [float(number) for number in state]}
-
-    def restore(self, saved: Mapping[str, Any], *, where: str = "checkpoint") -> FloatArray:
-        """The state that `save` was given.
-
-        Raises:
-            BadInput: if it is another learner's or not a state of this one.
-        """
-        if saved.get("learner") != type(self).__name__:
-            raise BadInput(f"{where}.learner", repr(saved.get("learner")), repr(type(self).__name__))
-        expected_size = self.initial_state().size
-        try:
-            state = np.array(saved.get("state"), dtype=float)
-        except (TypeError, ValueError):
-            state = np.array(np.nan)
-        if state.shape != (expected_size,) or not np.all(np.isfinite(state)):
-            raise BadInput(f"{where}.state", repr(saved.get("state")), f"{expected_size} finite numbers")
-        return state
 
 
 def rated(ratings: Sequence[float | None], features: Sequence[float]) -> tuple[FloatArray, FloatArray, npt.NDArray]:

@@ -6,9 +6,10 @@ import math
 from collections.abc import Collection, Iterable
 
 from mala_drake.errors import BadInput
-from mala_drake.messages import Action, ActionKind, Atom
+from mala_drake.messages import Action, ActionKind, Atom, LearnedCosts
 from mala_drake.messages import SymbolicState as ObservedState
-from mala_drake.planning.features import IN_TRANSIT, STOCK_PREDICATES, fill_problem, leg_fluents, location_name
+from mala_drake.planning.features import IN_TRANSIT, STOCK_PREDICATES, fill_problem, leg_fluents, leg_reserve
+from mala_drake.planning.learned_costs import NOTHING_LEARNED, learned_fluents, learned_leg
 from mala_drake.planning.leg_costs import NO_COST, LegCosts, Pose
 from mala_drake.planning.source import read_text
 from mala_drake.planning.state import Amount, Name, SymbolicState
@@ -17,6 +18,7 @@ from mala_drake.planning.task import PlanningTask
 from mala_drake.planning.ways import WAY_PREDICATES, targets
 from mala_drake.preferences import CRITERIA
 from mala_drake.resources import domains_folder
+from mala_drake.ward.cost_parameters import LEARNED_NAMES, location_name
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 TASK_NAMES = ("medication", "meal")
@@ -27,7 +29,7 @@ _FILES = {
     "meal": ("domain_meal.pddl", "problem_meal.pddl"),
 }
 _CHARGE = "battery-soc"
-_BATTERY = CRITERIA.index("battery")
+_PLENTY = 10  # Batteries full.
 _NOT_OBSERVED = frozenset({*WAY_PREDICATES.values(), "requested-medicine", "requested-supplement", "requires_cooking"})
 """Predicates that the problem and the planner know, not the grounding."""
 
@@ -79,8 +81,20 @@ class CareTask:
         """Where the robot is in a state of the planner, as the map spells it; empty in transit."""
         return self._places.get(self._location(state), "")
 
+    @property
+    def predictions(self) -> dict[Fact, float]:
+        """The fluents that can be learned, as predicted from the map."""
+        values = self.planning_task.initial_state.values
+        return {name: float(value) for name, value in values.items() if name[0] in LEARNED_NAMES}
+
     def observed_state(
-        self, observed: ObservedState, pose: Pose, *, standing_at: str, closed: Collection[tuple[str, str]] = ()
+        self,
+        observed: ObservedState,
+        pose: Pose,
+        *,
+        standing_at: str,
+        closed: Collection[tuple[str, str]] = (),
+        learned: LearnedCosts = NOTHING_LEARNED,
     ) -> SymbolicState:
         """The planner's state for what is observed now.
 
@@ -92,6 +106,7 @@ class CareTask:
             pose: of the robot: x, y, yaw.
             standing_at: the place whose standing pose the robot has last stopped at, empty for none.
             closed: pairs of locations between which the way has been found blocked.
+            learned: what is better known than predicted.
 
         Raises:
             ValueError: if the pose is needed and not finite.
@@ -103,8 +118,9 @@ class CareTask:
         at_place = observed.place == standing_at and location_name(observed.place) in self._locations
         facts.add(("at", self._robot, location_name(observed.place) if at_place else IN_TRANSIT))
         state = SymbolicState(frozenset(facts), initial.values)
+        state = state.with_fluents(learned_fluents(initial.values, learned))
         if not at_place:
-            state = state.with_fluents(self._transit_fluents(pose))
+            state = state.with_fluents(self._transit_fluents(pose, learned))
         return state.with_fluents({(_CHARGE, self._robot): observed.charge})
 
     def typical_states(self) -> tuple[SymbolicState, ...]:
@@ -140,15 +156,14 @@ class CareTask:
     def features(self, before: SymbolicState, text: str) -> tuple[float, ...]:
         """The five features that the domain predicts for an action, scaled: its stage cost under each weight alone.
 
-        The penalty for a low charge belongs to the plan's cost, not to the battery feature, which is the charge used.
+        The penalty for a low charge belongs to the plan's cost, not to the battery feature, which is the charge used:
+        the action is looked at with so much charge that there is none.
         """
+        rested = before.with_fluents({(_CHARGE, self._robot): _PLENTY})
         features = []
         for i in range(len(CRITERIA)):
-            weights = [int(i == j) for j in range(len(CRITERIA))]
-            start = self.planning_task.with_weights(before, weights)
+            start = self.planning_task.with_weights(rested, [int(i == j) for j in range(len(CRITERIA))])
             features.append(self._change(start, self.planning_task.apply(start, text), ("stage_cost",)))
-        used = -self._change(before, self.planning_task.apply(before, text), (_CHARGE, self._robot))
-        features[_BATTERY] = max(used, 0.0) * float(before.values[("feature-per-charge",)])
         return tuple(features)
 
     def ways_closed_by(self, action: Action) -> tuple[tuple[str, str], ...]:
@@ -162,16 +177,19 @@ class CareTask:
         facts = sorted(self.planning_task.initial_state.facts)
         return tuple((fact[1], goal) for fact in facts if fact[0] == self._way and fact[2] == goal)
 
-    def _transit_fluents(self, pose: Pose) -> dict[Name, Amount]:
+    def _transit_fluents(self, pose: Pose, learned: LearnedCosts) -> dict[Name, Amount]:
         if not all(map(math.isfinite, pose)):
             raise ValueError(f"the pose {pose} is not finite")
-        legs = {place: self._costs.from_pose(pose, place) for place in self._targets}
-        return {
-            fluent: value
-            for place, cost in legs.items()
-            if cost is not None
-            for fluent, value in leg_fluents(cost, IN_TRANSIT, location_name(place)).items()
-        }
+        fluents: dict[Name, Amount] = {}
+        for place in self._targets:
+            predicted = self._costs.from_pose(pose, place)
+            if predicted is not None:
+                way = IN_TRANSIT, location_name(place)
+                known = learned_leg(predicted, learned)
+                reserve = leg_reserve(max(predicted.charge, known.charge), *way)
+                for fluent, value in (leg_fluents(known, *way) | reserve).items():
+                    fluents[fluent] = value
+        return fluents
 
     def _location(self, state: SymbolicState) -> str:
         return next((fact[2] for fact in state.facts if fact[:2] == ("at", self._robot)), IN_TRANSIT)

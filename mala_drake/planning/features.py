@@ -16,6 +16,14 @@ from mala_drake.clock import ROUNDING, TICK
 from mala_drake.errors import BadInput
 from mala_drake.planning.leg_costs import LegCost, LegCosts
 from mala_drake.planning.ways import WAY_PREDICATES, targets, ways
+from mala_drake.ward.cost_parameters import (
+    APPROACH_ERROR,
+    LEG_RESERVE,
+    STANDING_DISCOMFORT,
+    charge_name,
+    location_name,
+    time_name,
+)
 from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, approach_error
 from mala_drake.ward.in_place_actions import VERBS, InPlaceAction, Verb
@@ -36,19 +44,20 @@ _BEGIN = ";; BEGIN generated"
 _END = ";; END generated"
 
 
-def location_name(place: str) -> str:
-    """The planning domain's name of a place of the map."""
-    return place.lower()
-
-
 def leg_fluents(cost: LegCost, start: str, goal: str) -> Fluents:
     """What the domain wants to know of a leg between two of its locations."""
     return {
         ("nav-time", start, goal): _rounded(cost.time, 2),
         ("location-safety", start, goal): _rounded(cost.risk, 5),
-        ("nav-battery", start, goal): _rounded(cost.charge, 4),
+        ("nav-charge", start, goal): _rounded(cost.charge, 4),
+        **leg_reserve(cost.charge, start, goal),  # Nothing better is known before a leg is driven.
         ("proximity-feature", start, goal): _rounded(cost.discomfort, 3),
     }
+
+
+def leg_reserve(charge: float, start: str, goal: str) -> Fluents:
+    """The charge to count on for a leg."""
+    return {(LEG_RESERVE, start, goal): _rounded(charge, 4)}
 
 
 def leg_data(costs: LegCosts, ward: Ward, task: str) -> tuple[tuple[Fact, ...], Fluents]:
@@ -78,9 +87,9 @@ def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Flue
     for goal in goals:
         name = location_name(goal.name)
         needed = [
-            Decimal(0) if name == charger else legs[("nav-battery", name, charger)]
+            Decimal(0) if name == charger else legs[(LEG_RESERVE, name, charger)]
             for charger in chargers
-            if name == charger or ("nav-battery", name, charger) in legs
+            if name == charger or (LEG_RESERVE, name, charger) in legs
         ]
         if not needed:
             raise BadInput(f"ward {ward.name}", f"no way from {goal.name} to a charger", "at least one")
@@ -89,8 +98,8 @@ def place_fluents(costs: LegCosts, ward: Ward, task: str, legs: Fluents) -> Flue
         if goal.category == "bedside":
             name = location_name(goal.name)
             error = approach_error((goal.x, goal.y, goal.yaw), IDEAL_HAND_OVER)
-            fluents[("approach-feature", name)] = _rounded(error, 4)
-            fluents[("standing-proximity", name)] = _rounded(costs.standing_discomfort(goal.name, 1.0), 4)
+            fluents[(APPROACH_ERROR, name)] = _rounded(error, 4)
+            fluents[(STANDING_DISCOMFORT, name)] = _rounded(costs.standing_discomfort(goal.name, 1.0), 4)
     return fluents
 
 
@@ -98,13 +107,12 @@ def table_fluents(task: str) -> Fluents:
     """What actions at a place take, and how much of a scaled feature one unit is."""
     fluents: Fluents = {}
     for verb in VERBS[task]:
-        name = verb.value.replace("_", "-")
         for dish in DISHES if verb is Verb.ASSEMBLE else ("",):
             action = InPlaceAction(verb, dish=dish)
             about = (dish,) if dish else ()
-            fluents[(f"{name}-time", *about)] = _rounded(_until_known(action.seconds), 2)
+            fluents[(time_name(verb), *about)] = _rounded(_until_known(action.seconds), 2)
             if verb is not Verb.RECHARGE:
-                fluents[(f"{name}-battery", *about)] = _rounded(action.charge, 4)
+                fluents[(charge_name(verb), *about)] = _rounded(action.charge, 4)
     if task == "meal":
         fluents |= {("presentation-error", d.name): _rounded(d.presentation_error, 4) for d in DISHES.values()}
     for unit, scale in zip(_UNITS, FEATURE_SCALES[task].as_array(), strict=True):

@@ -11,7 +11,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from mala_drake.messages import ActionKind, ActionReport, Outcome, PlanMessage, SymbolicState, Task
+from mala_drake.messages import ActionKind, ActionReport, Atom, LearnedCosts, Outcome, PlanMessage, SymbolicState, Task
 from mala_drake.planning.care_tasks import CareTask
 from mala_drake.planning.leg_costs import Pose
 from mala_drake.planning.plan import Plan
@@ -26,11 +26,12 @@ _STATUS = {"optimal": "optimal", "unsolvable": "unsolvable", "timeout": "limit"}
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """What is known at one moment: the observed state, the robot's pose, and the weights to plan with."""
+    """What is known at one moment: the observed state, the robot's pose, weights to plan with and learned costs."""
 
     observed: SymbolicState
     pose: Pose
     weights: tuple[float, ...]
+    learned: LearnedCosts = LearnedCosts()
 
 
 class TaskExecutive:
@@ -51,6 +52,11 @@ class TaskExecutive:
             for state in task.typical_states():
                 self._planners[name].solve(state, max_expansions=max_expansions)
 
+    @property
+    def predictions(self) -> dict[Atom, float]:
+        """The fluents of all tasks that can be learned, as predicted from the map."""
+        return {name: value for task in self._tasks.values() for name, value in task.predictions.items()}
+
     def begin(self, progress: TaskProgress, task: Task, situation: Situation) -> TaskProgress:
         """Takes up a new task, whatever was going on before."""
         progress = progress.begun(task, at=situation.observed.place)
@@ -63,7 +69,9 @@ class TaskExecutive:
         care, action, observed = self._tasks[progress.task.name], progress.action, situation.observed
         differing = care.mismatch(progress.expected, observed) if progress.expected is not None else ()
         progress = progress.executed(
-            mismatched=bool(differing), standing_at=_standing_at(progress, report.outcome, observed.place)
+            report.outcome,
+            mismatched=bool(differing),
+            standing_at=_standing_at(progress, report.outcome, observed.place),
         )
         if report.outcome is Outcome.BATTERY_EMPTY:
             return progress.finished(failure=f"battery empty during {action.text}")
@@ -81,7 +89,11 @@ class TaskExecutive:
         if not all(map(math.isfinite, situation.pose)):
             return _wait(progress)
         state = care.observed_state(
-            situation.observed, situation.pose, standing_at=progress.standing_at, closed=progress.closed
+            situation.observed,
+            situation.pose,
+            standing_at=progress.standing_at,
+            closed=progress.closed,
+            learned=situation.learned,
         )
         plan = self._solve(care, state, situation.weights)
         progress = progress.following(_message(plan, sequence=progress.plan.sequence + 1), state)

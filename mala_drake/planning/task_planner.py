@@ -13,6 +13,8 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    Atom,
+    LearnedCosts,
     PlanMessage,
     Preferences,
     SymbolicState,
@@ -39,14 +41,16 @@ class TaskPlanner(LeafSystem):
         - leg_report
         - in_place_report
         - preferences
+        - learned_costs
         output_ports:
         - action
         - plan
         - task_report
 
     On a new task, and after every finished action, it plans from the *observed* symbolic state, the charge and the
-    current planning weights, and dispatches the first action of the optimal plan. `robot_state` is (x, y, yaw, v_x,
-    v_y, omega_z); its pose tells where legs begin that do not start at a named place.
+    current planning weights, and dispatches the first action of the optimal plan. Actions cost what `learned_costs`
+    says, and what is predicted from the map where it says nothing or is not connected. `robot_state` is (x, y, yaw,
+    v_x, v_y, omega_z); its pose tells where legs begin that do not start at a named place.
 
     A task ends with success once its goal is observed. It ends with a failure, and the reason in the report, when no
     plan leads to the goal, when a search reaches its limit, after too many actions, when the same action fails three
@@ -94,6 +98,7 @@ class TaskPlanner(LeafSystem):
         self._leg_report = self.DeclareAbstractInputPort("leg_report", Value(ActionReport()))
         self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
+        self._learned_costs = self.DeclareAbstractInputPort("learned_costs", Value(LearnedCosts()))
         self._progress = self.DeclareAbstractState(Value(TaskProgress()))
         ticket = {self.abstract_state_ticket(self._progress)}
         self.DeclareAbstractOutputPort(
@@ -106,6 +111,11 @@ class TaskPlanner(LeafSystem):
             "task_report", lambda: Value(TaskReport()), self._calc_task_report, prerequisites_of_calc=ticket
         )
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, PLAN_OFFSET, self._update)
+
+    @property
+    def predictions(self) -> dict[Atom, float]:
+        """What can be learned about the costs of all its tasks: ground fluents, as predicted from the map."""
+        return self._executive.predictions
 
     def progress(self, context: Context) -> TaskProgress:
         """The task being worked on: its symbolic state, plan and report."""
@@ -144,4 +154,6 @@ class TaskPlanner(LeafSystem):
     def _situation(self, context: Context) -> Situation:
         x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
         preferences: Preferences = self._preferences.Eval(context)
-        return Situation(self._symbolic_state.Eval(context), (x, y, yaw), preferences.planning)
+        connected = self._learned_costs.HasValue(context)
+        learned: LearnedCosts = self._learned_costs.Eval(context) if connected else LearnedCosts()
+        return Situation(self._symbolic_state.Eval(context), (x, y, yaw), preferences.planning, learned)

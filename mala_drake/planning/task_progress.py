@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from mala_drake.messages import Action, Message, PlanMessage, Task, TaskReport
+from mala_drake.messages import Action, Message, Outcome, PlanMessage, Task, TaskReport
 from mala_drake.planning.state import SymbolicState
 
 
@@ -58,13 +58,15 @@ class TaskProgress(Message):
             report=TaskReport(sequence=task.sequence),
         )
 
-    def executed(self, *, mismatched: bool, standing_at: str) -> TaskProgress:
+    def executed(self, outcome: Outcome, *, mismatched: bool, standing_at: str) -> TaskProgress:
         """The current action has ended, well or badly."""
         report = replace(
             self.report,
             actions=(*self.report.actions, self.action.text),
             predicted_features=tuple(a + b for a, b in zip(self.report.predicted_features, self.features, strict=True)),
             mismatches=self.report.mismatches + mismatched,
+            last_action=self.action,
+            last_outcome=outcome,
         )
         return replace(self, report=report, expected=None, standing_at=standing_at)
 

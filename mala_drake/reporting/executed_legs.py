@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mala_drake.planning.care_tasks import TASK_NAMES, CareTask
-from mala_drake.planning.features import location_name
 from mala_drake.planning.syntax import ActionSchema, SetFact
 from mala_drake.reporting.results import Run
+from mala_drake.ward.cost_parameters import location_name
 from mala_drake.ward.ward_map import Ward
 
 _AT = "at"

@@ -13,7 +13,8 @@ from pydrake.common.value import Value
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
 from mala_drake.clock import METER_OFFSET, TICK
-from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.robot.action_marks import SUMMED, ActionMarks, mark_action
 from mala_drake.ward.congestion import sample
 from mala_drake.ward.dishes import presentation_error
 from mala_drake.ward.features import (
@@ -65,10 +66,12 @@ class FeatureMeter(LeafSystem):
         output_ports:
         - features
         - episode_report
+        - action_features
 
     `features` are (time, safety, battery, proximity, approach) so far, each divided by its scale and cut to [0, 1].
     `episode_report` is empty (sequence 0) until the task is finished, and again once the next one begins; its `details`
-    are the five sums unscaled.
+    are the five sums unscaled. `action_features` are those of the newest action that has ended, unscaled, as long as
+    the task report names it as the last one.
 
     Between two ticks the robot is taken to drive straight, at constant speed, and the rates of
     `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not counted as
@@ -100,6 +103,7 @@ class FeatureMeter(LeafSystem):
         self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
         self._charge = self.DeclareVectorInputPort("charge", 1)
         self._sums = self.DeclareDiscreteState(_Sums.Zero()[:])
+        self._marks = self.DeclareDiscreteState(ActionMarks.Zero()[:])
         ticket = {self.discrete_state_ticket(self._sums), self._task.ticket()}
         self.DeclareVectorOutputPort("features", len(FEATURES), self._calc_features, prerequisites_of_calc=ticket)
         self.DeclareAbstractOutputPort(
@@ -108,17 +112,31 @@ class FeatureMeter(LeafSystem):
             self._calc_episode_report,
             prerequisites_of_calc=ticket | {self._task_report.ticket()},
         )
+        self.DeclareAbstractOutputPort(
+            "action_features",
+            lambda: Value(ActionFeatures()),
+            self._calc_action_features,
+            prerequisites_of_calc={
+                self.discrete_state_ticket(self._sums),
+                self.discrete_state_ticket(self._marks),
+                self._task_report.ticket(),
+            },
+        )
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, METER_OFFSET, self._update)
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         sums = _Sums(discrete_state.get_mutable_value(self._sums))
+        marks = ActionMarks(discrete_state.get_mutable_value(self._marks))
         task = self._task.Eval(context)
         if task.sequence != sums.task:
             self._begin(context, sums, task)
+            marks[:] = 0.0
         elif task.sequence > 0 and not sums.closed:
             self._integrate(context, sums)
             report = self._task_report.Eval(context)
             sums.closed = float(report.finished and report.sequence == task.sequence)
+        current = self._action.Eval(context).sequence
+        mark_action(marks, sums, current=current, working=sums.task > 0 and not sums.closed)
 
     def _begin(self, context: Context, sums: Any, task: Task) -> None:
         sums[:] = 0.0
@@ -183,6 +201,19 @@ class FeatureMeter(LeafSystem):
                 details=tuple((name, float(getattr(sums, name))) for name in names),
             )
         )
+
+    def _calc_action_features(self, context: Context, output: Value) -> None:
+        sums = _Sums(context.get_discrete_state(self._sums).value())
+        marks = ActionMarks(context.get_discrete_state(self._marks).value())
+        report: TaskReport = self._task_report.Eval(context)
+        action = report.last_action
+        if action.sequence == 0 or action.sequence != marks.finished:
+            output.set_value(ActionFeatures())
+            return
+        handing_over = _handing_over(action)
+        pose_error = 0.0 if handing_over is None else sums.approach_error - presentation_error(handing_over.dish)
+        measured = {name: float(getattr(marks, name)) for name in SUMMED}
+        output.set_value(ActionFeatures(action, report.last_outcome, approach_error=float(pose_error), **measured))
 
 
 def _handing_over(action: Action) -> InPlaceAction | None:

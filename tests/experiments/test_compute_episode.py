@@ -51,7 +51,7 @@ def test_another_scenario_in_between_changes_nothing(in_a_row):
 def test_the_clock_and_what_was_learned_go_on(in_a_row):
     _, done = in_a_row
     assert [carried.ticks for _, carried in done] == [15, 30, 45]
-    assert all(list(carried.learners) == ["preference_learner"] for _, carried in done)
+    assert all(list(carried.learners) == ["preference_learner", "cost_learner"] for _, carried in done)
     assert [json.loads(line)["episode"] for line, _ in done] == [0, 1, 2]
     assert [json.loads(line)["task"] for line, _ in done] == ["medication", "meal", "medication"]
 

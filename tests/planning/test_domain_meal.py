@@ -412,7 +412,7 @@ def test_a_lost_ingredient_is_fetched_again_from_wherever_it_is_missed(
         (name, "in_transit", fact[2]): 1
         for fact in task.initial_state.facts
         if fact[:2] == ("connected", "in_transit")
-        for name in ("nav-time", "location-safety", "nav-battery", "proximity-feature")
+        for name in ("nav-time", "location-safety", "nav-charge", "nav-battery", "proximity-feature")
     }
     fluents = {fluent: value / 20 for fluent, value in legs.items()}
     known = [("meal_to_prepare", "robot1", "salad"), ("collected_ingredient", "robot1", "nuts")]

@@ -13,7 +13,13 @@ from mala_drake.ward.ward_map import LoadWard, Ward
 
 DOMAIN, PROBLEM = domains_folder() / "domain_med.pddl", domains_folder() / "problem_med.pddl"
 
-LAST_DIGIT = {"nav-time": 1e-2, "location-safety": 1e-5, "nav-battery": 1e-4, "proximity-feature": 1e-3}
+LAST_DIGIT = {
+    "nav-time": 1e-2,
+    "location-safety": 1e-5,
+    "nav-charge": 1e-4,
+    "nav-battery": 1e-4,
+    "proximity-feature": 1e-3,
+}
 
 
 @pytest.fixture(scope="module")

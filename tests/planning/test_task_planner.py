@@ -16,6 +16,7 @@ from mala_drake.messages import (
     ActionKind,
     ActionReport,
     Atom,
+    LearnedCosts,
     Outcome,
     PlanMessage,
     Preferences,
@@ -24,6 +25,7 @@ from mala_drake.messages import (
     TaskReport,
 )
 from mala_drake.patient.profiles import PROFILES
+from mala_drake.ward.features import FEATURE_SCALES
 from mala_drake.ward.items import all_items
 from mala_drake.ward.ward_map import LoadWard, Ward
 
@@ -228,6 +230,30 @@ def test_each_plan_is_made_with_the_weights_of_its_moment(bench: Bench) -> None:
     bench.see("pharmacy_north", *HAVE, charge=0.76)
     bench.report()
     assert "(approach_right_to_bed robot1 supply_a)" in bench.plan.actions
+
+
+def test_each_plan_is_made_with_the_costs_learned_by_then(bench: Bench) -> None:
+    at_the_pharmacy(bench)
+    assert "(approach_left_to_bed robot1 supply_a)" in bench.plan.actions
+    dear = (("approach-feature", "patient_bed_left"), 30.0)
+    bench.planner.GetInputPort("learned_costs").FixValue(bench.context, Value(LearnedCosts((dear,), updates=1)))
+    bench.see("pharmacy_north", *HAVE, charge=0.76)
+    bench.report()
+    assert "(approach_right_to_bed robot1 supply_a)" in bench.plan.actions
+
+
+def test_the_features_predicted_at_dispatch_are_those_of_the_learned_costs(bench: Bench) -> None:
+    slow = (("nav-time", "home", "pharmacy_north"), 24.0)
+    bench.planner.GetInputPort("learned_costs").FixValue(bench.context, Value(LearnedCosts((slow,), updates=1)))
+    at_the_pharmacy(bench)
+    assert bench.task_report.predicted_features[0] == pytest.approx(24.0 / FEATURE_SCALES["medication"].time, rel=1e-4)
+
+
+def test_what_can_be_learned_is_predicted_for_all_its_tasks(planner: mut.TaskPlanner) -> None:
+    names = {name[0] for name in planner.predictions}
+    assert {"nav-time", "nav-charge", "nav-battery", "check-time", "cook-time", "approach-feature"} <= names
+    assert "nearest-charger-battery" not in names
+    assert "w0" not in names
 
 
 def test_each_plan_starts_from_the_observed_charge(bench: Bench) -> None:

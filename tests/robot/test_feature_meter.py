@@ -7,7 +7,7 @@ from pydrake.systems.analysis import Simulator
 
 import mala_drake.robot.feature_meter as mut
 from mala_drake.clock import METER_OFFSET, TICK
-from mala_drake.messages import Action, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Outcome, Task, TaskReport
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.drive_path import make_drive_path
@@ -210,6 +210,78 @@ def test_an_old_report_does_not_close_a_new_task(ward):
     stage.tick()
     stage.finish(success=True)
     assert stage.output("episode_report") == EpisodeReport()
+
+
+def begin_action(stage, sequence, kind=ActionKind.MOVE, name="go_to_supply_a", last=None, outcome=Outcome.SUCCESS):
+    """The next action is dispatched, and the task report names the one before."""
+    action = Action(sequence, kind, name, ("robot1",), place="patient_bed_left")
+    stage.action.GetMutableData().set_value(action)
+    if last is not None:
+        stage.report.GetMutableData().set_value(TaskReport(1, last_action=last, last_outcome=outcome))
+    return action
+
+
+def test_what_an_action_took_is_told_when_it_has_ended(ward):
+    stage = Stage(ward)
+    assert stage.output("action_features") == ActionFeatures()
+    first = begin_action(stage, 1)
+    for charge in (0.99, 0.98, 0.97):
+        stage.tick(charge=charge)
+        assert stage.output("action_features") == ActionFeatures()
+    begin_action(stage, 2, last=first)
+    stage.tick(charge=0.96)
+    told = stage.output("action_features")
+    assert (told.action, told.outcome) == (first, Outcome.SUCCESS)
+    # The first tick still belongs to nobody: the action was dispatched in it.
+    assert (told.duration, told.charge_used) == pytest.approx((3 * TICK, 0.03))
+
+
+def test_actions_add_up_to_the_episode(ward):
+    stage = Stage(ward, start=(14.0, 10.0, 0.0))
+    generator = np.random.default_rng(3)
+    action, parts, position, charge = begin_action(stage, 1), [], np.array([14.0, 10.0]), 1.0
+    stage.tick()
+    for sequence in range(2, 7):
+        for _ in range(generator.integers(1, 6)):
+            position, charge = position + generator.uniform(0.0, 0.25, 2), charge - 0.01
+            stage.tick(pose=(*position, 0.3), charge=charge)
+        action = begin_action(stage, sequence, last=action)
+        stage.tick()
+        parts.append(stage.output("action_features"))
+    report = TaskReport(1, finished=True, success=True, last_action=action, last_outcome=Outcome.SUCCESS)
+    stage.report.GetMutableData().set_value(report)
+    stage.tick()
+    parts.append(stage.output("action_features"))
+    assert [part.action.sequence for part in parts] == [1, 2, 3, 4, 5, 6]
+    whole = dict(stage.output("episode_report").details)
+    whole["duration"] -= TICK  # Before the first action was seen.
+    for name in ("duration", "risk", "charge_used", "discomfort"):
+        assert sum(getattr(part, name) for part in parts) == pytest.approx(whole[name])
+
+
+def test_a_hand_over_is_told_with_its_pose_and_without_the_looks_of_the_dish(ward):
+    stage = Stage(ward)
+    action = Action(1, ActionKind.IN_PLACE, "deliver_on_bedside_table_left", ("robot1", "sandwich"))
+    stage.action.GetMutableData().set_value(action)
+    stage.tick(pose=(0.3, 0.1, 0.4))
+    report = TaskReport(1, finished=True, success=True, last_action=action, last_outcome=Outcome.SUCCESS)
+    stage.report.GetMutableData().set_value(report)
+    stage.tick()
+    pose_error = approach_error((0.3, 0.1, 0.4), IDEAL_HAND_OVER)
+    assert stage.output("action_features").approach_error == pytest.approx(pose_error)
+    assert dict(stage.output("episode_report").details)["approach_error"] > pose_error + 1.0
+
+
+def test_what_the_report_does_not_name_as_the_last_action_is_not_told(ward):
+    stage = Stage(ward)
+    first = begin_action(stage, 1)
+    stage.tick()
+    second = begin_action(stage, 2, last=first)
+    stage.tick()
+    begin_action(stage, 3, last=second)
+    assert stage.output("action_features") == ActionFeatures()  # The planner is ahead of the meter by an offset.
+    stage.tick()
+    assert stage.output("action_features").action == second
 
 
 def test_before_any_task_nothing_is_measured(ward):
