@@ -13,10 +13,9 @@ from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.results import Results, Run
 
 
-def rating_noise(results: Results) -> float | None:
+def rating_noise(results: Results, condition: str) -> float | None:
     """The standard deviation of a rating, as the folder tells it; None where it does not, or there is no noise."""
-    patient = results.scenario.get("patient", {})
-    noise = patient.get("noise") if isinstance(patient, dict) else None
+    noise = results.told(condition, "patient", "noise")
     usable = isinstance(noise, (int, float)) and math.isfinite(noise) and noise > 0
     return float(noise) if usable and noise is not None else None
 
@@ -43,13 +42,14 @@ def errors_of(run: Run, true_weights: Sequence[float]) -> NDArray[np.float64]:
     return np.array([record.weights_after for record in run.episodes]) - np.asarray(true_weights, dtype=float)
 
 
-def error_over_bound(results: Results, condition: str, noise: float) -> NDArray[np.float64]:
+def error_over_bound(results: Results, condition: str) -> NDArray[np.float64]:
     """Root mean square of error over bound after each episode, over runs and weights; NaN before the bound is finite.
 
-    Only episodes that all runs have count, and only patients whose wishes are known.
+    Only episodes that all runs have count, and only patients whose wishes are known. Empty where there is no bound.
     """
+    noise = rating_noise(results, condition)
     known = [(run, true) for run in results.of(condition) if (true := results.true_weights(run.profile)) is not None]
-    if not known:
+    if noise is None or not known:
         return np.empty(0)
     length = min(len(run.episodes) for run, _ in known)
     bounds = np.array([bounds_of(run, noise)[:length] for run, _ in known])

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mala_drake.learning.convergence import CONVERGED_DISTANCE
-from mala_drake.reporting.bound_results import error_over_bound, rating_noise
+from mala_drake.reporting.bound_results import error_over_bound
 from mala_drake.reporting.paper_results import PAPER_RESULTS
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import quantile
@@ -139,10 +139,7 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
 
 def _final_ratio(results: Results, condition: str) -> float | None:
     """Error over bound at the end; None where it cannot be told."""
-    noise = rating_noise(results)
-    if noise is None:
-        return None
-    ratios = error_over_bound(results, condition, noise)
+    ratios = error_over_bound(results, condition)
     return float(ratios[-1]) if ratios.size and math.isfinite(ratios[-1]) else None
 
 

@@ -105,7 +105,7 @@ def _lead(results: Results) -> str:
 
 def _ward(results: Results) -> Ward:
     """The ward that was run in; the one that comes with the package when it cannot be read any more."""
-    told = results.scenario.get("ward")
+    told = results.told(results.main, "ward")
     try:
         return LoadWard(str(told)) if told else LoadWard()
     except BadInput:

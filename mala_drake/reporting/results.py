@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,15 +11,12 @@ from typing import Any
 from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_reader import read_episodes
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
+from mala_drake.experiments.experiment import MAIN, RunName
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.preferences import CRITERIA
-from mala_drake.reporting.wording import words
-
-MAIN = ""
-"""The condition of the runs that lie in no condition's folder."""
+from mala_drake.reporting.plan import missing_beside_others, missing_from_plan, read_plan, scenarios_of
 
 _SEED_FOLDER = "seed_"
-_SUMMARY_FILE = "summary.json"
 _MAIN_NAMES = ("full", "default", "main", "posterior")  # What an experiment without a main condition is measured by.
 
 
@@ -50,13 +46,13 @@ class Results:
     Attributes:
         name: of the folder.
         runs: sorted by condition (the main one first), profile and seed.
-        scenario: as `summary.json` tells it; empty when it tells none.
+        scenarios: what was run under each condition, as the folder tells it; empty where it does not.
         notes: what is missing or was left out, in sentences.
     """
 
     name: str
     runs: tuple[Run, ...]
-    scenario: Mapping[str, Any]
+    scenarios: Mapping[str, Mapping[str, Any]]
     notes: tuple[str, ...]
 
     @cached_property
@@ -85,14 +81,18 @@ class Results:
 
     def learner(self, condition: str) -> str:
         """The name of the learner that a condition ran with, as far as the folder tells it."""
-        told = self.scenario.get("learner", {})
-        name = str(told.get("name", "")) if isinstance(told, dict) else ""
-        return condition or name or "main"
+        return condition or str(self.told(condition, "learner", "name") or "main")
+
+    def told(self, condition: str, *fields: str) -> Any:
+        """A field of the scenario of a condition; None where the folder does not tell it."""
+        value: Any = self.scenarios.get(condition, {})
+        for name in fields:
+            value = value.get(name) if isinstance(value, dict) else None
+        return value
 
     def true_weights(self, profile: str) -> tuple[float, ...] | None:
         """What the patient really wants; None for a patient of whom the folder does not tell it."""
-        patient = self.scenario.get("patient", {})
-        told = patient.get("true_weights") if isinstance(patient, dict) else None
+        told = self.told(self.main, "patient", "true_weights")
         if profile not in PROFILES and isinstance(told, list) and len(told) == len(CRITERIA):
             return tuple(float(weight) for weight in told)
         return PROFILES.get(profile)
@@ -111,15 +111,14 @@ def load_results(folder: Path) -> Results:
     if not runs:
         expected = f"{EPISODES_FILE} of `run --out` or `experiment --out` in it"
         raise BadInput(str(folder), "has no episodes", expected)
-    main = _main_condition({run.condition for run in runs})
-    order = [*PROFILES, *sorted({run.profile for run in runs} - set(PROFILES))]
-    runs.sort(key=lambda run: (run.condition != main, run.condition, order.index(run.profile), run.seed))
-    notes += _missing(runs)
-    return Results(folder.resolve().name, tuple(runs), _scenario(folder, notes), tuple(notes))
-
-
-def _main_condition(conditions: set[str]) -> str:
-    return next((name for name in (MAIN, *_MAIN_NAMES) if name in conditions), min(conditions))
+    plan = read_plan(folder, notes)
+    found = {run.condition for run in runs}
+    conditions = [*(plan.conditions if plan else (MAIN, *_MAIN_NAMES)), *sorted(found)]
+    profiles = [*PROFILES, *sorted({run.profile for run in runs} - set(PROFILES))]
+    runs.sort(key=lambda run: (conditions.index(run.condition), profiles.index(run.profile), run.seed))
+    lengths = {RunName(run.condition, run.profile, run.seed): len(run.episodes) for run in runs}
+    notes += missing_from_plan(plan, lengths) if plan else missing_beside_others(lengths)
+    return Results(folder.resolve().name, tuple(runs), scenarios_of(folder, plan, sorted(found), notes), tuple(notes))
 
 
 def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
@@ -146,37 +145,3 @@ def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
         if record.episode != number:
             raise BadInput(f"{path}, line {number + 1}", f"episode {record.episode}", f"episode {number}")
     return Run(condition, profile, seed, tuple(records))
-
-
-def _missing(runs: list[Run]) -> Iterator[str]:
-    """What is less than it should be, judged by the other runs of the same condition."""
-    for condition in dict.fromkeys(run.condition for run in runs):
-        of_condition = [run for run in runs if run.condition == condition]
-        within = f" under {words(condition)}" if condition else ""
-        seeds = {run.seed for run in of_condition}
-        longest = max(len(run.episodes) for run in of_condition)
-        for profile in dict.fromkeys(run.profile for run in of_condition):
-            absent = sorted(seeds - {run.seed for run in of_condition if run.profile == profile})
-            if absent:
-                numbers = ", ".join(map(str, absent))
-                yield f"No run of {words(profile)} with seed {numbers}{within}, which other profiles have."
-        for run in of_condition:
-            if len(run.episodes) < longest:
-                done = f"{len(run.episodes)} of {longest} episodes"
-                yield f"The run of {words(run.profile)}, seed {run.seed}{within}, has only {done}."
-
-
-def _scenario(folder: Path, notes: list[str]) -> Mapping[str, Any]:
-    """What was run, as the summary of the folder tells it, or else that of the first run with one."""
-    path = folder / _SUMMARY_FILE
-    if not path.is_file():
-        notes.append(f"There is no {_SUMMARY_FILE}: the runs may not have come to their end.")
-    for candidate in (path, *sorted(folder.rglob(_SUMMARY_FILE))):
-        try:
-            summary = json.loads(candidate.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            continue
-        scenario = summary.get("scenario") if isinstance(summary, dict) else None
-        if isinstance(scenario, dict):
-            return scenario
-    return {}

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 def bound_picture(results: Results) -> Iterator[Picture]:
     """Error over bound by episode, and the final distance of each run beside the one that the bound allows."""
-    noise = rating_noise(results)
+    noise = rating_noise(results, results.main)
     if noise is None or not any(results.true_weights(profile) for profile in results.profiles):
         return
     figure = new_figure(WIDTH, 2.5)
     left, right = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
-    ends = _draw_ratios(left, results, noise)
+    ends = _draw_ratios(left, results)
     _draw_distances(right, results, noise)
     figure.draw_without_rendering()
     label_ends(left, left.get_xlim()[1], ends)
@@ -39,11 +39,11 @@ def bound_picture(results: Results) -> Iterator[Picture]:
     yield Picture("bound", "How much of what could be learned was learned", caption, figure)
 
 
-def _draw_ratios(axes: Axes, results: Results, noise: float) -> list[tuple[float, str, str]]:
+def _draw_ratios(axes: Axes, results: Results) -> list[tuple[float, str, str]]:
     """Draws a curve a learner; returns what to write at their ends."""
     ends = []
     for condition in reversed(compared_conditions(results)):
-        ratios = error_over_bound(results, condition, noise)
+        ratios = error_over_bound(results, condition)
         known = ratios[np.isfinite(ratios)]
         if not known.size:
             continue
