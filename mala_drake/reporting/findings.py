@@ -119,9 +119,7 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
     for condition in compared_conditions(results):
         figures = profile_results(results, condition)
         episodes = [each.convergence.median for each in figures]
-        told = (
-            "no convergence" if min(episodes) == math.inf else f"convergence after {_range(episodes, 1)} rated episodes"
-        )
+        told = "no convergence" if min(episodes) == math.inf else f"convergence after {_episodes(_range(episodes, 1))}"
         finals = _range([each.final_distance.median for each in figures], 3)
         learner = words(results.learner(condition)).capitalize()
         text = f"{learner}: {told} and a final distance of {finals} (medians by patient)"
@@ -131,10 +129,12 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
     if reported:
         counted = _range([each.rated_episodes[0] for each in reported], 1)
         finals = _range([each.final_distance for each in reported], 3)
-        sentences.append(
-            f"The paper reports convergence after {counted} rated episodes and final distances of {finals}."
-        )
+        sentences.append(f"The paper reports convergence after {_episodes(counted)} and final distances of {finals}.")
     return tuple(sentences)
+
+
+def _episodes(count: str) -> str:
+    return f"{count} rated episode" + "s" * (count != "1")
 
 
 def _final_ratio(results: Results, condition: str) -> float | None:

@@ -107,11 +107,11 @@ def load_results(folder: Path) -> Results:
     if not folder.is_dir():
         raise BadInput(str(folder), "is not a folder", "one that `run --out` or `experiment --out` has written")
     notes: list[str] = []
+    plan = read_plan(folder, notes)
     runs = [run for path in sorted(folder.rglob(EPISODES_FILE)) if (run := _read_run(folder, path, notes))]
     if not runs:
         expected = f"{EPISODES_FILE} of `run --out` or `experiment --out` in it"
         raise BadInput(str(folder), "has no episodes", expected)
-    plan = read_plan(folder, notes)
     found = {run.condition for run in runs}
     conditions = [*(plan.conditions if plan else (MAIN, *_MAIN_NAMES)), *sorted(found)]
     profiles = [*PROFILES, *sorted({run.profile for run in runs} - set(PROFILES))]
@@ -122,14 +122,13 @@ def load_results(folder: Path) -> Results:
 
 
 def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
-    """The run whose episodes `path` holds; None, with a note, where there is none."""
+    """The run whose episodes `path` holds; None where there is none."""
     place = path.parent.relative_to(folder)
     records, torn = read_episodes(path)
     if torn:
         notes.append(f"The last line of {place / path.name} is torn and left out.")
     if not records:
-        notes.append(f"{place / path.name} holds no episode.")
-        return None
+        return None  # That it is missing is told by what should be there.
     if not place.parts:
         condition, profile, seed = MAIN, records[0].profile, records[0].seed
     elif len(place.parts) in (2, 3) and place.name.removeprefix(_SEED_FOLDER).isdecimal():
