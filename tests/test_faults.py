@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -232,6 +233,91 @@ def test_time_that_runs_out_fails_the_episode():
     record, _ = run(one_episode(episode_time_limit=15.0))
     assert not record.success
     assert record.failure == "the time of the episode was up"
+
+
+def a_meal(**changes):
+    """One meal for a patient in a hurry: a sandwich."""
+    return one_episode(task="meal", control__solver="rti", **changes)
+
+
+def lose(episode, box):
+    """A box ends up on the floor far away, wherever it has been."""
+    body = episode.plant.GetBodyByName("box", episode.plant.GetModelInstanceByName(box))
+    pose = episode.plant.GetFreeBodyPose(episode.plant_context, body)
+    pose.set_translation([-20.0, -20.0, 0.06])
+    episode.plant.SetFreeBodyPose(episode.plant_context, body, pose)
+
+
+def sell_out(episode, *boxes):
+    """Somebody else takes boxes from their shelf."""
+    for box in boxes:
+        lose(episode, box)
+    _, context = episode.own("world")
+    state = context.get_mutable_abstract_state(0)
+    kept = state.get_value()
+    state.set_value(replace(kept, stock=tuple(name for name in kept.stock if name not in boxes)))
+
+
+def acting(episode, name):
+    return lambda: episode.read("task_planner", "action").name == name
+
+
+@pytest.mark.slow
+def test_an_ingredient_lost_on_the_way_is_fetched_again_and_all_that_was_done_is_done_anew():
+    episode = Episode(a_meal())
+    assert episode.advance(120.0, until=acting(episode, "go_to_quality_check"))
+    lose(episode, "pantry/vegetables")
+    assert episode.advance(500.0, until=episode.finished)
+    report = episode.report()
+    assert report.success
+    assert report.mismatches >= 1
+    actions = [action.strip("()").split()[0] for action in report.actions]
+    assert sum(action == "(collect_ingredient robot1 pantry vegetables)" for action in report.actions) == 2
+    for name in ("check_ingredients", "sanitize_workspace", "wash_ingredients", "chop_ingredients"):
+        assert actions.count(name) == 2, name
+    assert actions.count("choose_sandwich") == 1
+    assert episode.read("safety_monitor", "safety")[1] == 0
+
+
+def test_a_dish_that_is_out_of_stock_is_changed_for_another():
+    episode = Episode(a_meal())
+    assert episode.advance(60.0, until=acting(episode, "go_to_pantry"))
+    sell_out(episode, "pantry/bread")
+    assert episode.advance(120.0, until=acting(episode, "go_to_prep_station"))
+    facts = episode.read("world", "world_facts").atoms
+    assert ("meal_to_prepare", "robot1", "salad") in facts
+    assert {atom for atom in facts if atom[0] == "missing_ingredient"} == set()
+    assert ("collected_ingredient", "robot1", "nuts") in facts
+
+
+def test_a_lost_ingredient_without_reserve_makes_it_another_dish():
+    episode = Episode(a_meal())
+    assert episode.advance(120.0, until=acting(episode, "go_to_prep_station"))
+    lose(episode, "pantry/bread")
+    assert episode.advance(120.0, until=acting(episode, "choose_salad"))
+    # The kitchen is a one-way street: back to the pantry by a charger.
+    assert episode.advance(5.0, until=acting(episode, "go_to_charge_main"))
+    assert episode.advance(60.0, until=acting(episode, "go_to_pantry"))
+    assert episode.advance(60.0, until=acting(episode, "collect_ingredient"))
+    assert episode.read("task_planner", "action").arguments[-1] == "nuts"
+    assert episode.advance(20.0, until=acting(episode, "go_to_prep_station"))
+    assert episode.read("in_place_executor", "magnet").held == (("pantry/nuts", 0), ("pantry/vegetables", 1))
+
+
+def test_without_vegetables_there_is_no_meal_and_no_success():
+    episode = Episode(a_meal())
+    assert episode.advance(60.0, until=acting(episode, "go_to_pantry"))
+    sell_out(episode, "pantry/vegetables", "pantry/vegetables_2")
+    assert episode.advance(120.0, until=episode.finished)
+    assert not episode.report().success
+    assert "no plan" in episode.report().failure
+
+
+def test_a_meal_with_a_low_battery_begins_at_a_charger():
+    episode = Episode(a_meal(robot__initial_charge=0.25))
+    assert episode.advance(120.0, until=acting(episode, "recharge"))
+    assert episode.advance(60.0, until=acting(episode, "go_to_pantry"))
+    assert episode.read("battery", "charge")[0] > 0.98
 
 
 @pytest.mark.slow
