@@ -36,11 +36,11 @@ class LineOfSight:
         samples = [_along(ring) for ring in rings]
         self._points = np.concatenate([np.empty((0, 2)), *samples])
         self._owners = np.repeat(np.arange(len(shapes)), [len(points) for points in samples])
-        self._starts = np.concatenate([np.empty((0, 2)), *(ring[:-1] for ring in rings)])
-        self._edges = np.concatenate([np.empty((0, 2)), *(np.diff(ring, axis=0) for ring in rings)])
         self._counts = np.array([len(ring) - 1 for ring in rings], dtype=int)
-        self._edge_owners = np.repeat(np.arange(len(shapes)), self._counts)
-        self._normals, self._offsets = _half_planes(rings)
+        self._starts, self._edges = _corners_and_edges(rings)
+        self._squares = np.einsum("bek,bek->be", self._edges, self._edges)
+        self._normals = np.stack((self._edges[..., 1], -self._edges[..., 0]), axis=2) / np.sqrt(self._squares)[..., None]
+        self._offsets = np.einsum("bek,bek->be", self._normals, self._starts)
 
     def visible(self, x: float, y: float) -> NDArray[np.bool_]:
         """Which shapes are seen from (x, y): boolean, one entry a shape.
@@ -49,29 +49,26 @@ class LineOfSight:
         them, is in sight; the point of view itself must be finite.
         """
         eye = np.array([x, y])
-        near = self._distances(eye) <= self._reach
-        points, owners = self._candidates(eye, near)
-        hidden = self._is_hidden(eye, points, owners, np.flatnonzero(near))
-        seen = np.zeros(len(near), dtype=bool)
-        seen[owners[~hidden]] = True
+        near = np.flatnonzero(self._distances(eye) <= self._reach)
+        seen = np.zeros(len(self._counts), dtype=bool)
+        # Most shapes show their nearest point; only of the others the whole outline has to be looked at.
+        seen[near] = ~self._is_hidden(eye, self._nearest_points(eye, near), near, near)
+        unseen = np.zeros(len(seen), dtype=bool)
+        unseen[near] = ~seen[near]
+        chosen = np.flatnonzero(unseen[self._owners])
+        offsets = self._points[chosen] - eye
+        chosen = chosen[np.einsum("ij,ij->i", offsets, offsets) <= self._reach**2]
+        owners = self._owners[chosen]
+        seen[owners[~self._is_hidden(eye, self._points[chosen], owners, near)]] = True
         return seen
 
-    def _candidates(self, eye: NDArray[np.float64], near: NDArray[np.bool_]) -> tuple[NDArray, NDArray]:
-        """Points of the outlines within reach, and whose they are; the nearest point of each near shape is one."""
-        offsets = self._points - eye
-        chosen = near[self._owners] & (np.einsum("ij,ij->i", offsets, offsets) <= self._reach**2)
-        of_near = np.flatnonzero(near[self._edge_owners])
-        starts, edges = self._starts[of_near], self._edges[of_near]
-        along = np.einsum("ij,ij->i", eye - starts, edges) / np.einsum("ij,ij->i", edges, edges)
-        nearest = starts + np.clip(along, 0.0, 1.0)[:, None] * edges
-        distances = np.hypot(*(nearest - eye).T)
-        # The nearest point of a shape is on one of its edges: sort by shape, then distance, and take the firsts.
-        order = np.lexsort((distances, self._edge_owners[of_near]))
-        owners, first = np.unique(self._edge_owners[of_near][order], return_index=True)
-        return (
-            np.concatenate((self._points[chosen], nearest[order][first])),
-            np.concatenate((self._owners[chosen], owners)),
-        )
+    def _nearest_points(self, eye: NDArray[np.float64], shapes: NDArray[np.intp]) -> NDArray[np.float64]:
+        """The point of each shape's outline that is nearest to `eye`."""
+        starts, edges = self._starts[shapes], self._edges[shapes]
+        along = np.einsum("bek,bek->be", eye - starts, edges) / self._squares[shapes]
+        points = starts + np.clip(along, 0.0, 1.0)[..., None] * edges
+        nearest = np.hypot(points[..., 0] - eye[0], points[..., 1] - eye[1]).argmin(axis=1)
+        return points[np.arange(len(shapes)), nearest]
 
     def _is_hidden(
         self, eye: NDArray[np.float64], points: NDArray[np.float64], owners: NDArray, blockers: NDArray
@@ -111,14 +108,11 @@ def _along(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate(pieces)
 
 
-def _half_planes(rings: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Outward normals (n, e, 2) and offsets (n, e) of all rings; shorter ones repeat their last edge."""
-    most = max((len(ring) - 1 for ring in rings), default=0)
-    normals, offsets = np.zeros((len(rings), most, 2)), np.zeros((len(rings), most))
+def _corners_and_edges(rings: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Where the edges of all rings begin and where they lead, (n, e, 2) each; shorter rings repeat their last edge."""
+    most = max((len(ring) - 1 for ring in rings), default=1)
+    starts, edges = np.zeros((len(rings), most, 2)), np.zeros((len(rings), most, 2))
     for i, ring in enumerate(rings):
-        edges = np.diff(ring, axis=0)
-        outward = np.stack((edges[:, 1], -edges[:, 0]), axis=1) / np.hypot(*edges.T)[:, None]
-        index = np.minimum(np.arange(most), len(edges) - 1)
-        normals[i] = outward[index]
-        offsets[i] = np.einsum("ij,ij->i", outward, ring[:-1])[index]
-    return normals, offsets
+        index = np.minimum(np.arange(most), len(ring) - 2)
+        starts[i], edges[i] = ring[:-1][index], np.diff(ring, axis=0)[index]
+    return starts, edges
