@@ -57,6 +57,8 @@ class PreferenceLearner(LeafSystem):
         self._first_episode = first_episode
         keyed_generator(seed, first_episode, _NAME)  # Refuses a bad seed now rather than in the simulation.
         state = learner.initial_state() if initial_state is None else initial_state
+        # What was computed last, and from which state: a pure function's memory, not state.
+        self._newest: tuple[bytes, Preferences] = (b"", Preferences())
         self._ratings = self.DeclareAbstractInputPort("ratings", Value(Ratings()))
         index = self.DeclareDiscreteState(np.append(state, 0.0))
         self.DeclareAbstractOutputPort(
@@ -92,16 +94,21 @@ class PreferenceLearner(LeafSystem):
         return int(context.get_discrete_state_vector().value()[-1])
 
     def _calc_preferences(self, context: Context, output: Value) -> None:
+        # The update leaves the state as it is at nearly every tick, but the port is asked anew after each.
+        key = context.get_discrete_state_vector().value().tobytes()
+        if key != self._newest[0]:
+            self._newest = (key, self._preferences(context))
+        output.set_value(self._newest[1])
+
+    def _preferences(self, context: Context) -> Preferences:
         state = self.learner_state(context)
         generator = keyed_generator(self._seed, self._first_episode + self.seen(context), _NAME)
         deviation = self._learner.deviation(state)
-        output.set_value(
-            Preferences(
-                planning=tuple(self._learner.planning_weights(state, generator).tolist()),
-                estimate=tuple(self._learner.estimate(state).tolist()),
-                deviation=None if deviation is None else tuple(deviation.tolist()),
-                updates=self._learner.updates(state),
-            )
+        return Preferences(
+            planning=tuple(self._learner.planning_weights(state, generator).tolist()),
+            estimate=tuple(self._learner.estimate(state).tolist()),
+            deviation=None if deviation is None else tuple(deviation.tolist()),
+            updates=self._learner.updates(state),
         )
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
