@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydrake.geometry import Box, Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role
@@ -51,7 +51,7 @@ _TROLLEY_COLOR = (0.85, 0.35, 0.20, 1.0)
 _FRAME_RATE = 20.0  # Pictures per second in Meshcat.
 
 
-def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None) -> Diagram:
+def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None, task: str | None = None) -> Diagram:
     """The whole stack for one scenario, as a Drake diagram like any other.
 
     A default context starts at the first episode, with the robot at home. The subsystems have the names of their
@@ -60,13 +60,18 @@ def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None) -> Di
     Args:
         scenario: what to simulate; validated here.
         meshcat: shows it, if given.
+        task: has only the boxes in the ward that an episode with this task needs; None for those that any episode of
+            the scenario needs. Every box costs time at each step of the plant.
 
     Raises:
         BadInput: naming the field of the scenario, or the place in a model, that is wrong.
     """
     Validate(scenario)
     ward = scenario.load_ward()
-    station = _StationBuilder(scenario, ward, meshcat)
+    names = task_names(scenario.task, episodes=scenario.episodes)
+    if task is not None and task not in names:
+        raise BadInput("task", repr(task), "one of " + ", ".join(sorted(set(names))))
+    station = _StationBuilder(scenario, ward, meshcat, names, frozenset(names if task is None else (task,)))
     station.add_physics()
     station.add_low_level()
     station.add_layers()
@@ -126,14 +131,15 @@ def learner_states_of(station: Diagram, context: Context) -> dict[str, FloatArra
 class _StationBuilder:
     """Adds the systems layer by layer, from the floor up, then wires them."""
 
-    def __init__(self, scenario: Scenario, ward: Ward, meshcat: Meshcat | None) -> None:
+    def __init__(
+        self, scenario: Scenario, ward: Ward, meshcat: Meshcat | None, names: Sequence[str], tasks: frozenset[str]
+    ) -> None:
         self._scenario = scenario
         self._ward = ward
         self._meshcat = meshcat
         self._congestion = Congestion(ward)
-        self._names = task_names(scenario.task, episodes=scenario.episodes)
-        # Every box costs time at each step of the plant: there are only those that some episode needs.
-        self._kept = all_items(ward, frozenset(self._names))
+        self._names = names
+        self._kept = all_items(ward, tasks)
         self._builder = DiagramBuilder()
         self._plant: MultibodyPlant
         self._robot: CareRobot

@@ -6,11 +6,9 @@ import gc
 import threading
 from dataclasses import dataclass
 
-from pydrake.systems.framework import Diagram
-
 from mala_drake.experiments.episode import Carried, simulate_episode
+from mala_drake.experiments.stations import Stations
 from mala_drake.scenario import Scenario
-from mala_drake.station import MakeCareStation
 
 
 @dataclass(frozen=True)
@@ -23,25 +21,25 @@ class EpisodeWork:
 
 
 _one_at_a_time = threading.Lock()
-_newest: tuple[Scenario, Diagram] | None = None
+_newest: Stations | None = None
 
 
 def compute_episode(work: EpisodeWork) -> tuple[str, Carried]:
     """The record of the episode as a line of JSON, and what goes on from it.
 
-    The newest station is kept, because the next episode is likely to be of the same run, and to build one takes a
-    second. A process computes one episode at a time: its threads could not go on side by side anyway.
+    The newest run's stations are kept, because the next episode is likely to be of the same run, and to build one takes
+    a second. A process computes one episode at a time: its threads could not go on side by side anyway.
     """
     with _one_at_a_time:
-        station = _station(work.scenario)
+        station = _stations(work.scenario).of_episode(work.episode)
         record, carried = simulate_episode(station, work.scenario, episode=work.episode, carried=work.carried)
         return record.to_json(), carried
 
 
-def _station(scenario: Scenario) -> Diagram:
+def _stations(scenario: Scenario) -> Stations:
     global _newest
-    if _newest is None or _newest[0] != scenario:
+    if _newest is None or _newest.scenario != scenario:
         _newest = None
         gc.collect()  # A diagram is a knot of references, and a large one.
-        _newest = scenario, MakeCareStation(scenario)
-    return _newest[1]
+        _newest = Stations(scenario)
+    return _newest

@@ -1,4 +1,4 @@
-"""Runs a scenario: episode after episode on one diagram, each in a fresh context, learners carried over."""
+"""Runs a scenario: episode after episode, each in a fresh context of its task's station, learners carried over."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from pydrake.geometry import Meshcat
-from pydrake.systems.framework import Diagram
 
 from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeFile, EpisodeRecord, check_writable
 from mala_drake.experiments.run_summary import SUMMARY_FILE, summarise
+from mala_drake.experiments.stations import Stations
 from mala_drake.reporting.run_recording import RunRecording
 from mala_drake.scenario import Scenario, Validate
-from mala_drake.station import MakeCareStation
 
 
 class Watcher(Protocol):
@@ -64,12 +63,13 @@ def run_scenario(scenario: Scenario, options: RunOptions, *, watcher: Watcher | 
     for path in options.files:
         check_writable(path)
     meshcat = _make_meshcat(options)
-    station = MakeCareStation(scenario, meshcat=meshcat)
+    stations = Stations(scenario, meshcat=meshcat)
+    stations.of_episode(0)
     recording = _start_recording(scenario, options, meshcat)
     # Only now: what an earlier run has written outlives every mistake in the scenario.
     file = _start_results(options)
     try:
-        records = _run_episodes(station, scenario, options, watcher, file, recording)
+        records = _run_episodes(stations, scenario, options, watcher, file, recording)
     finally:
         if file:
             file.close()
@@ -92,7 +92,7 @@ def _start_results(options: RunOptions) -> EpisodeFile | None:
 
 
 def _run_episodes(
-    station: Diagram,
+    stations: Stations,
     scenario: Scenario,
     options: RunOptions,
     watcher: Watcher | None,
@@ -111,7 +111,7 @@ def _run_episodes(
                 recording.caption(seconds, f"Episode {episode + 1}: {text}")
 
         record, carried = simulate_episode(
-            station,
+            stations.of_episode(episode),
             scenario,
             episode=episode,
             carried=carried,

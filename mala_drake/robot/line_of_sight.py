@@ -39,7 +39,8 @@ class LineOfSight:
         self._counts = np.array([len(ring) - 1 for ring in rings], dtype=int)
         self._starts, self._edges = _corners_and_edges(rings)
         self._squares = np.einsum("bek,bek->be", self._edges, self._edges)
-        self._normals = np.stack((self._edges[..., 1], -self._edges[..., 0]), axis=2) / np.sqrt(self._squares)[..., None]
+        outward = np.stack((self._edges[..., 1], -self._edges[..., 0]), axis=2)
+        self._normals = outward / np.sqrt(self._squares)[..., None]
         self._offsets = np.einsum("bek,bek->be", self._normals, self._starts)
 
     def visible(self, x: float, y: float) -> NDArray[np.bool_]:
