@@ -294,9 +294,9 @@ def test_a_lost_ingredient_without_reserve_makes_it_another_dish():
     episode = Episode(a_meal())
     assert episode.advance(120.0, until=acting(episode, "go_to_prep_station"))
     lose(episode, "pantry/bread")
-    assert episode.advance(120.0, until=acting(episode, "choose_salad"))
     # The kitchen is a one-way street: back to the pantry by a charger.
-    assert episode.advance(5.0, until=acting(episode, "go_to_charge_main"))
+    assert episode.advance(60.0, until=acting(episode, "go_to_charge_main"))
+    assert episode.advance(60.0, until=acting(episode, "choose_salad"))
     assert episode.advance(60.0, until=acting(episode, "go_to_pantry"))
     assert episode.advance(60.0, until=acting(episode, "collect_ingredient"))
     assert episode.read("task_planner", "action").arguments[-1] == "nuts"
