@@ -197,7 +197,7 @@ def graph(
 
 @app.command()
 def experiment(
-    name: Annotated[str, typer.Argument(help="convergence.")],
+    name: Annotated[str, typer.Argument(help="convergence or ablations.")],
     scenario: Annotated[
         Path | None, typer.Argument(help="Scenario file that the runs are based on; the usual scenario if left out.")
     ] = None,
@@ -210,6 +210,10 @@ def experiment(
         str | None,
         typer.Option(help="Of convergence: preference learners, separated by commas; the first is the main one."),
     ] = None,
+    conditions: Annotated[
+        str | None, typer.Option(help="Of ablations: conditions, separated by commas; all of them if left out.")
+    ] = None,
+    full: Annotated[bool, typer.Option("--full", help="Of ablations: all patients, and twice the episodes.")] = False,
     task: Annotated[str | None, typer.Option(help="medication, meal or alternate, which is usual.")] = None,
     solver: Annotated[str | None, typer.Option(help="MPC solver: snopt, ipopt or rti.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the results; results/NAME if left out.")] = None,
@@ -228,18 +232,23 @@ def experiment(
     results as if it had never stopped; options that are left out are then those it was begun with.
     """
     from mala_drake.experiments.experiment_kind import ExperimentOptions
-    from mala_drake.experiments.experiments import Execution, experiment_kind, run_experiment
+    from mala_drake.experiments.experiments import Execution, experiment_kind, files_of, run_experiment
     from mala_drake.reporting.experiment_console import ExperimentConsole
 
     if resume and overwrite:
         raise BadInput("--resume", "together with --overwrite", "one of them")
     kind = experiment_kind(name)
+    chosen = {"--learners": learners, "--conditions": conditions}
+    for option, text in chosen.items():
+        if text is not None and option != kind.condition_option:
+            raise BadInput(option, f"with {name}", f"{kind.condition_option}, or nothing")
     options = ExperimentOptions(
         scenario=scenario,
         profiles=_names("--profiles", profiles),
         seeds=_seeds(seeds),
         episodes=episodes,
-        conditions=_names("--learners", learners),
+        conditions=_names(kind.condition_option, chosen[kind.condition_option]),
+        full=full,
         task=task,
         solver=solver,
     )
@@ -251,7 +260,7 @@ def experiment(
         typer.echo(json.dumps(summary))
     else:
         console.show(summary)
-        console.show_files([folder / "summary.json"])
+        console.show_files(files_of(kind, folder))
     raise typer.Exit(0 if _all_done(summary) else 1)
 
 
@@ -299,7 +308,7 @@ def report(
 @app.command()
 def bench(
     name: Annotated[
-        str | None, typer.Argument(help="plant, mpc, agreement, plan or sensitivities; all if left out.")
+        str | None, typer.Argument(help="plant, mpc, agreement, plan, episode or sensitivities; all if left out.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,
 ) -> None:

@@ -5,18 +5,22 @@ Drake's YAML reader looks at the fields' types themselves, so annotations in thi
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from mala_drake.configuration import load_typed
 from mala_drake.control.solver import SOLVER_NAMES
 from mala_drake.errors import BadInput
+from mala_drake.grounding.atom_memberships import MEMBERSHIP_NAMES
 from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
 from mala_drake.messages import Shape
 from mala_drake.patient.profiles import PROFILES, profile_weights
 from mala_drake.planning.care_tasks import TASK_NAMES
-from mala_drake.preferences import validated_weights
+from mala_drake.preferences import CRITERIA, validated_weights
+from mala_drake.randomness import keyed_generator
 from mala_drake.resources import models_folder
 from mala_drake.ward.items import all_items
 from mala_drake.ward.models import ward_models
@@ -59,6 +63,7 @@ class WorldConfig:
     wrong_item_probability: float = 0.05  # That a dispenser hands over another item than asked for.
     wrong_items: list[str] = field(default_factory=list)  # Kinds handed over first, whatever is asked, for tests.
     obstacles: list[ObstacleConfig] = field(default_factory=list)  # Not on the map; only the sensor sees them.
+    risk_variation: float = 0.0  # v: an episode's congestion risk is U(1 - v, 1 + v) times the planner's.
 
 
 @dataclass
@@ -70,6 +75,8 @@ class PatientConfig:
     noise: float = 0.1  # Standard deviation of a rating.
     clip: bool = False  # Whether ratings are cut to [1, 5].
     missing: float = 0.0  # Probability that a criterion is left unrated.
+    earlier_weights: list[float] = field(default_factory=list)  # What the patient wanted before a change of mind.
+    earlier_episodes: int = 0  # How many of the first episodes that was for.
 
 
 @dataclass
@@ -79,9 +86,17 @@ class LearnerConfig:
     name: str = "posterior"  # posterior, projected_gradient (the paper's), reference_gradient, fixed, random, bandit.
     initial_weights: list[float] = field(default_factory=list)  # Of the gradient learners and fixed; uniform if empty.
     learning_rate: float = 0.12  # eta of the gradient learners.
+    random_initial_weights: bool = False  # Drawn evenly from the simplex instead, by the seed.
     exploration: float = 0.15  # Of the gradient learners: standard deviation added to the planning weights.
     exploration_decay: float = 0.2  # How fast it falls with the number of episodes; 0 is never.
     exploration_until: float = 0.03  # Of the posterior: the weights' deviation at which it stops; 1 is at once.
+
+
+@dataclass
+class GroundingConfig:
+    """How the robot's state becomes symbols."""
+
+    membership: str = "fuzzy"  # fuzzy (degrees of truth), or crisp (an atom is true or false).
 
 
 @dataclass
@@ -124,13 +139,28 @@ class Scenario:
     world: WorldConfig = field(default_factory=WorldConfig)
     patient: PatientConfig = field(default_factory=PatientConfig)
     learner: LearnerConfig = field(default_factory=LearnerConfig)
+    grounding: GroundingConfig = field(default_factory=GroundingConfig)
     planner: PlannerConfig = field(default_factory=PlannerConfig)
     control: ControlConfig = field(default_factory=ControlConfig)
 
     @property
     def true_weights(self) -> tuple[float, ...]:
-        """The patient's weights w*."""
+        """The patient's weights w*: those of the end, should there be a change of mind."""
         return tuple(self.patient.true_weights) or profile_weights(self.patient.profile)
+
+    def true_weights_in(self, episode: int) -> tuple[float, ...]:
+        """The patient's weights w* in an episode, counted from 0."""
+        early = episode < self.patient.earlier_episodes
+        return tuple(self.patient.earlier_weights) if early else self.true_weights
+
+    @property
+    def settled_learner(self) -> LearnerConfig:
+        """The learner's settings once the seed has drawn what it is to draw."""
+        if not self.learner.random_initial_weights:
+            return self.learner
+        generator = keyed_generator(self.random_seed, 0, "initial_weights")
+        drawn = generator.dirichlet(np.ones(len(CRITERIA))).tolist()
+        return replace(self.learner, initial_weights=drawn)
 
     @property
     def profile_name(self) -> str:
@@ -181,11 +211,16 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
     _check_ranges(scenario, at)
     for name, weights in (
         ("patient.true_weights", scenario.patient.true_weights),
+        ("patient.earlier_weights", scenario.patient.earlier_weights),
         ("learner.initial_weights", scenario.learner.initial_weights),
     ):
         if weights:
             validated_weights(weights, where=at + name)
-    make_learner(scenario.learner, where=at + "learner")
+    if scenario.patient.earlier_episodes and not scenario.patient.earlier_weights:
+        raise BadInput(at + "patient.earlier_weights", "none, for earlier_episodes", "the weights of those episodes")
+    if scenario.learner.random_initial_weights and scenario.learner.initial_weights:
+        raise BadInput(at + "learner.initial_weights", "given, and to be random", "one or the other")
+    make_learner(scenario.settled_learner, where=at + "learner")
     ward = _checked_ward(scenario, at)
     kinds = sorted({item.kind for item in all_items(ward, ("medication",))})
     for i, kind in enumerate(scenario.world.wrong_items):
@@ -213,6 +248,7 @@ def _one_of(at: str, value: str, names: Sequence[str]) -> None:
 def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "task", scenario.task, _task_choices())
     _one_of(at + "patient.profile", scenario.patient.profile, tuple(PROFILES))
+    _one_of(at + "grounding.membership", scenario.grounding.membership, MEMBERSHIP_NAMES)
     _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
     _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
     _one_of(at + "control.horizon_kind", scenario.control.horizon_kind, HORIZON_KINDS)
@@ -236,8 +272,10 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("robot.yaw_noise", robot.yaw_noise, 0.0, 1.0),
         ("robot.velocity_noise", robot.velocity_noise, 0.0, 1.0),
         ("world.wrong_item_probability", world.wrong_item_probability, 0.0, 1.0),
+        ("world.risk_variation", world.risk_variation, 0.0, 1.0),
         ("patient.noise", patient.noise, 0.0, 10.0),
         ("patient.missing", patient.missing, 0.0, 1.0),
+        ("patient.earlier_episodes", patient.earlier_episodes, 0, math.inf),
         ("learner.learning_rate", scenario.learner.learning_rate, 0.0, 10.0),
         ("learner.exploration", scenario.learner.exploration, 0.0, 10.0),
         ("learner.exploration_decay", scenario.learner.exploration_decay, 0.0, 10.0),

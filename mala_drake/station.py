@@ -16,6 +16,7 @@ from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
 from mala_drake.errors import BadInput
+from mala_drake.grounding.atom_memberships import location_membership, predicate_memberships
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
 from mala_drake.learning.abstract_learner import FloatArray
 from mala_drake.learning.cost_estimator import CostEstimator
@@ -204,7 +205,11 @@ class _StationBuilder:
         )
         self._grounding = self._add(
             "fuzzy_grounding",
-            FuzzyGrounding(locations={name: (x, y) for name, (x, y, _) in places.items()}),
+            FuzzyGrounding(
+                locations={name: (x, y) for name, (x, y, _) in places.items()},
+                location_membership=location_membership(scenario.grounding.membership),
+                predicate_memberships=predicate_memberships(scenario.grounding.membership),
+            ),
         )
         rules = LegRules(
             step_budget=scenario.control.step_budget,
@@ -237,7 +242,10 @@ class _StationBuilder:
                 seed=scenario.random_seed,
             ),
         )
-        self._feature_meter = self._add("feature_meter", FeatureMeter(ward))
+        self._feature_meter = self._add(
+            "feature_meter",
+            FeatureMeter(ward, risk_variation=scenario.world.risk_variation, seed=scenario.random_seed),
+        )
 
     def add_learning(self) -> None:
         """The patient, who learns from the ratings, and who learns what actions cost."""
@@ -249,12 +257,14 @@ class _StationBuilder:
                 noise=scenario.patient.noise,
                 clip=scenario.patient.clip,
                 missing=scenario.patient.missing,
+                earlier_weights=scenario.patient.earlier_weights,
+                earlier_episodes=scenario.patient.earlier_episodes,
                 seed=scenario.random_seed,
             ),
         )
         self._learner = self._add(
             "preference_learner",
-            PreferenceLearner(learner=make_learner(scenario.learner), seed=scenario.random_seed),
+            PreferenceLearner(learner=make_learner(scenario.settled_learner), seed=scenario.random_seed),
         )
         self._cost_learner = None
         if scenario.planner.learned_costs:

@@ -64,6 +64,27 @@ def test_true_weights_replace_the_profile(tmp_path):
     assert scenario.profile_name == "custom"
 
 
+def test_a_change_of_mind_gives_the_first_episodes_other_weights(tmp_path):
+    text = "patient: {profile: safety_first, earlier_weights: [0.2, 0.2, 0.2, 0.2, 0.2], earlier_episodes: 2}"
+    scenario = load(tmp_path, text)
+    assert [scenario.true_weights_in(episode) for episode in range(4)] == [
+        (0.2,) * 5,
+        (0.2,) * 5,
+        PROFILES["safety_first"],
+        PROFILES["safety_first"],
+    ]
+    assert mut.Scenario().true_weights_in(0) == mut.Scenario().true_weights
+
+
+def test_initial_weights_may_be_drawn_by_the_seed(tmp_path):
+    text = "{random_seed: %d, learner: {name: projected_gradient, random_initial_weights: true}}"
+    drawn = [tuple(load(tmp_path, text % seed).settled_learner.initial_weights) for seed in (0, 1, 0)]
+    assert drawn[0] == drawn[2] != drawn[1]
+    assert all(sum(weights) == pytest.approx(1.0) and min(weights) >= 0.0 for weights in drawn)
+    untouched = mut.Scenario()
+    assert untouched.settled_learner == untouched.learner
+
+
 def test_obstacles_are_shapes_seen_from_above(tmp_path):
     text = "world: {obstacles: [{name: cart, x: 3, y: 4, yaw: 0.5, half_length: 0.7, half_width: 0.2}]}"
     (shape,) = load(tmp_path, text).unmapped_shapes
@@ -111,6 +132,16 @@ def test_no_number_may_be_negative(prefix, name):
         ("control: {horizon_kind: growing}", ["control.horizon_kind: 'growing'", "receding, shrinking"]),
         ("control: {horizon: 1}", ["control.horizon: 1", "from 2"]),
         ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
+        ("grounding: {membership: vague}", ["grounding.membership: 'vague'", "fuzzy, crisp"]),
+        ("world: {risk_variation: 1.5}", ["world.risk_variation: 1.5", "from 0 to 1"]),
+        ("patient: {earlier_weights: [1, 1, 0, 0, 0]}", ["patient.earlier_weights", "expected 1"]),
+        ("patient: {earlier_episodes: -1}", ["patient.earlier_episodes: -1", ">= 0"]),
+        ("patient: {earlier_episodes: 3}", ["patient.earlier_weights: none", "weights of those"]),
+        ("learner: {random_initial_weights: true}", ["learner.initial_weights: given to posterior"]),
+        (
+            "learner: {name: fixed, random_initial_weights: true, initial_weights: [1, 0, 0, 0, 0]}",
+            ["learner.initial_weights", "one or the other"],
+        ),
         ("robot: {initial_charge: 1.5}", ["robot.initial_charge: 1.5", "from 0 to 1"]),
         ("world: {wrong_item_probability: 2}", ["world.wrong_item_probability: 2", "from 0 to 1"]),
         ("world: {wrong_items: [candy]}", ["world.wrong_items[0]: 'candy'", "med_antibiotic"]),

@@ -10,7 +10,7 @@ from mala_drake.errors import BadInput
 
 Rows = list[dict[str, Any]]
 
-BENCHMARKS = ("plant", "mpc", "agreement", "plan", "sensitivities")
+BENCHMARKS = ("plant", "mpc", "agreement", "plan", "episode", "sensitivities")
 """Each is a module `bench_<name>` with a function of that name that returns rows for a table."""
 
 

@@ -99,7 +99,7 @@ class EpisodeWatch:
             weights_before=list(self._before.estimate),
             weights_after=list(after.estimate),
             weights_std=None if after.deviation is None else list(after.deviation),
-            distance_to_true=preference_distance(after.estimate, self._scenario.true_weights),
+            distance_to_true=preference_distance(after.estimate, self._scenario.true_weights_in(self._episode)),
             sim_time_s=self._context.get_time() - self._started,
             solver=self._scenario.control.solver,
             mpc_solves=sum(leg.solves for leg in legs),

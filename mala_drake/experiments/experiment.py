@@ -90,10 +90,9 @@ class Experiment:
         if CUSTOM in self.profiles and not self.base.patient.true_weights:
             raise BadInput("--profiles", repr(CUSTOM), "a scenario with patient.true_weights, for that profile")
         for condition in self.conditions:
-            for profile in self.profiles:
-                # Seeds are known to be whole numbers >= 0, and nothing else depends on them.
-                scenario = self.scenario(RunName(condition, profile, self.seeds[0]))
-                Validate(scenario, where=f"condition {condition}" if condition else "")
+            # Profiles are known to exist and seeds to be whole numbers >= 0, and nothing else depends on them.
+            scenario = self.scenario(RunName(condition, self.profiles[0], self.seeds[0]))
+            Validate(scenario, where=f"condition {condition}" if condition else "")
 
     def to_json(self) -> dict[str, Any]:
         """Everything that decides what the runs come to."""

@@ -73,7 +73,8 @@ def experiment_folder(
             raise BadInput(str(folder), "holds an experiment", "--resume to go on with it, or --overwrite")
         else:
             refuse_differences(begun, experiment, folder)
-        (folder / SUMMARY_FILE).unlink(missing_ok=True)  # It is of what was there before.
+        for outdated in (folder / SUMMARY_FILE, folder / f"{experiment.name}.md"):
+            outdated.unlink(missing_ok=True)
         yield
 
 

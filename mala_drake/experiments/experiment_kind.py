@@ -32,6 +32,7 @@ class ExperimentKind:
         condition_names: what it may name.
         conditions: makes the conditions from the base scenario and the names; None stands for the usual ones.
         full_size: when everything is asked for; None when that is the size anyway.
+        explanations: what each condition means, where a page is to tell it.
     """
 
     name: str
@@ -40,6 +41,7 @@ class ExperimentKind:
     condition_names: tuple[str, ...]
     conditions: Callable[[Scenario, Sequence[str] | None], Mapping[str, Changes]]
     full_size: Size | None = None
+    explanations: Mapping[str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,6 +131,8 @@ def _base(options: ExperimentOptions, size: Size, begun: Experiment | None) -> S
         base = LoadScenario(options.scenario, defaults=usual)
     else:
         base = copy.deepcopy(begun.base) if begun else usual
+    if base.ward:
+        base.ward = str(Path(base.ward).resolve())  # For whoever goes on from another folder.
     before = begun.base if begun else base
     base.task = before.task if options.task is None else options.task
     base.episodes = before.episodes if options.episodes is None else options.episodes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,9 @@ from mala_drake.experiments.episode_reader import read_episodes
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord, plain
 from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_summary import timing_of, totals_of
-from mala_drake.learning.information_bound import efficiency, weight_bound
+from mala_drake.learning.information_bound import efficiency
 from mala_drake.preferences import CRITERIA
+from mala_drake.reporting.bound_results import bounds_of
 from mala_drake.reporting.profile_results import ProfileResults
 from mala_drake.reporting.quantiles import Spread
 from mala_drake.reporting.results import Run
@@ -130,16 +131,10 @@ def _error_over_bound(runs: Sequence[tuple[Run, Scenario]]) -> float | None:
     if not runs or any(scenario.patient.noise == 0.0 for _, scenario in runs):
         return None
     errors = [np.subtract(run.final.weights_after, scenario.true_weights) for run, scenario in runs]
-    bounds = [weight_bound(_rated_features(run), scenario.patient.noise) for run, scenario in runs]
+    bounds = [bounds_of(_since_change_of_mind(run, scenario), scenario.patient.noise)[-1] for run, scenario in runs]
     return efficiency(errors, bounds) if np.isfinite(bounds).all() else None
 
 
-def _rated_features(run: Run) -> list[list[float]]:
-    """The features of each episode, NaN where the patient has not rated."""
-    return [
-        [
-            np.nan if rating is None else record.features[name]
-            for name, rating in zip(CRITERIA, record.ratings, strict=True)
-        ]
-        for record in run.episodes
-    ]
+def _since_change_of_mind(run: Run, scenario: Scenario) -> Run:
+    """The run without the episodes that tell nothing about what the patient wants in the end."""
+    return replace(run, episodes=run.episodes[scenario.patient.earlier_episodes :] or run.episodes)

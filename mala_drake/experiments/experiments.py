@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from mala_drake.errors import BadInput
+from mala_drake.experiments.ablations import ABLATION_KIND
 from mala_drake.experiments.compute_episode import compute_episode
+from mala_drake.experiments.condition_page import page_of, write_condition_page
 from mala_drake.experiments.conduct import ExperimentWatcher, conduct
 from mala_drake.experiments.convergence import CONVERGENCE
 from mala_drake.experiments.durable_files import replace_durably
@@ -18,7 +20,7 @@ from mala_drake.experiments.experiment_kind import ExperimentKind, ExperimentOpt
 from mala_drake.experiments.experiment_summary import summarise_experiment
 from mala_drake.experiments.run_summary import SUMMARY_FILE
 
-EXPERIMENTS = {kind.name: kind for kind in (CONVERGENCE,)}
+EXPERIMENTS = {kind.name: kind for kind in (CONVERGENCE, ABLATION_KIND)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,4 +74,11 @@ def run_experiment(
         failures = conduct(experiment, execution.out, executor, watcher=watcher)
         summary = summarise_experiment(experiment, execution.out, failures)
         replace_durably(execution.out / SUMMARY_FILE, json.dumps(summary, indent=2, allow_nan=False) + "\n")
+        if kind.explanations is not None and summary["totals"]["episodes"]:
+            write_condition_page(execution.out, kind.name, kind.explanations)
     return summary
+
+
+def files_of(kind: ExperimentKind, folder: Path) -> list[Path]:
+    """What there is in the folder besides the runs."""
+    return [path for path in (folder / SUMMARY_FILE, page_of(folder, kind.name)) if path.exists()]

@@ -59,11 +59,17 @@ class RunFolder:
         Args:
             line: its record, without a newline.
             carried: what goes on from it to the next one.
+
+        Raises:
+            BadInput: when it cannot be written, for example because the disk is full.
         """
         states = {self.episodes: self.carried, self.episodes + 1: carried}
         data = {"carried_after": {str(count): state.to_json() for count, state in states.items()}}
-        replace_durably(self.path / CHECKPOINT_FILE, json.dumps(data, allow_nan=False) + "\n")
-        append_durably(self._file, line + "\n")
+        try:
+            replace_durably(self.path / CHECKPOINT_FILE, json.dumps(data, allow_nan=False) + "\n")
+            append_durably(self._file, line + "\n")
+        except OSError as error:
+            raise BadInput(str(self.path), f"cannot be written ({error.strerror})", "room for the results") from None
         self.episodes, self.carried = self.episodes + 1, carried
 
     def close(self) -> None:

@@ -1,6 +1,7 @@
 """Fuzzy grounding: memberships, fuzzy logic, defuzzification, and the system that puts them in the diagram."""
 
 from mala_drake.grounding.aggregation import fuzzy_state, state_truth, state_truth_gradient
+from mala_drake.grounding.alpha_cut import AlphaCut
 from mala_drake.grounding.best_state import BestState, best_state
 from mala_drake.grounding.defuzzification import (
     INSTANTIATION_THRESHOLD,
@@ -45,6 +46,7 @@ __all__ = [
     "AbstractMembership",
     "AbstractNorms",
     "AbstractPredicateMembership",
+    "AlphaCut",
     "ArgmaxThreshold",
     "BestState",
     "ChargeMembership",

@@ -8,19 +8,18 @@ from collections.abc import Mapping
 from pydrake.common.value import Value
 from pydrake.systems.framework import Context, LeafSystem
 
+from mala_drake.grounding.atom_memberships import AT_A_PLACE
+from mala_drake.grounding.atom_memberships import predicate_memberships as fuzzy_memberships
 from mala_drake.grounding.defuzzification import INSTANTIATION_THRESHOLD
 from mala_drake.grounding.location_grounding import IN_TRANSIT, LocationGrounding
 from mala_drake.grounding.membership import AbstractMembership
 from mala_drake.grounding.predicates import (
     AbstractPredicateMembership,
-    ChargeMembership,
     Observation,
     world_fact_truths,
 )
-from mala_drake.grounding.saturated_ramp import SaturatedRamp
 from mala_drake.messages import Action, Atom, Memberships, RobotState, SymbolicState, WorldFacts
 
-_PAPER_RAMP = SaturatedRamp()
 _AT = "at"
 
 
@@ -57,7 +56,7 @@ class FuzzyGrounding(LeafSystem):
         locations: Mapping[str, tuple[float, float]],
         robot: str = "robot1",
         threshold: float = INSTANTIATION_THRESHOLD,
-        location_membership: AbstractMembership = _PAPER_RAMP,
+        location_membership: AbstractMembership = AT_A_PLACE,
         predicate_memberships: Mapping[str, AbstractPredicateMembership] | None = None,
     ) -> None:
         """Constructs the grounding.
@@ -77,7 +76,7 @@ class FuzzyGrounding(LeafSystem):
         self._threshold = threshold
         self._grounding = LocationGrounding(locations, membership=location_membership, threshold=threshold)
         if predicate_memberships is None:
-            predicate_memberships = {"battery-low": ChargeMembership(("battery-low", robot))}
+            predicate_memberships = fuzzy_memberships("fuzzy", robot=robot)
         self._predicates = tuple(predicate_memberships[name] for name in sorted(predicate_memberships))
         self._own_predicates = frozenset(predicate_memberships)
         self._robot_state = self.DeclareVectorInputPort("robot_state", 6)

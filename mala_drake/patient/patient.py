@@ -27,6 +27,8 @@ class Patient(LeafSystem):
 
     The ratings carry the sequence number of the episode they are about and its features, so that a learner needs no
     other input. A patient rates what was delivered: of a failed episode every rating is None, and learners skip it.
+
+    A patient may have a change of mind: the first episodes are rated by earlier weights.
     """
 
     def __init__(
@@ -36,6 +38,8 @@ class Patient(LeafSystem):
         noise: float = 0.1,
         clip: bool = False,
         missing: float = 0.0,
+        earlier_weights: Sequence[float] = (),
+        earlier_episodes: int = 0,
         seed: int = 0,
         first_episode: int = 0,
     ) -> None:
@@ -46,6 +50,8 @@ class Patient(LeafSystem):
             noise: standard deviation of the ratings.
             clip: whether ratings are cut to [1, 5].
             missing: probability that a criterion is left unrated.
+            earlier_weights: the true weights of the first episodes, like `profile_weights`; empty when there are none.
+            earlier_episodes: the number of the first episode that is rated by `profile_weights`.
             seed: of the run.
             first_episode: the number of the episode that has the sequence number 1.
 
@@ -54,6 +60,8 @@ class Patient(LeafSystem):
         """
         super().__init__()
         self._weights = validated_weights(profile_weights, where="patient.profile_weights")
+        self._earlier_episodes = earlier_episodes
+        self._earlier = validated_weights(earlier_weights or profile_weights, where="patient.earlier_weights")
         self._habits = RatingHabits(noise=noise, clip=clip, missing=missing)
         self._seed = seed
         self._first_episode = first_episode
@@ -79,5 +87,7 @@ class Patient(LeafSystem):
     def _rate(self, report: EpisodeReport) -> Ratings:
         if not report.success:
             return Ratings(report.sequence, (None,) * len(CRITERIA), report.features)
-        generator = keyed_generator(self._seed, self._first_episode + report.sequence - 1, "patient")
-        return Ratings(report.sequence, rate(report.features, self._weights, generator, self._habits), report.features)
+        episode = self._first_episode + report.sequence - 1
+        generator = keyed_generator(self._seed, episode, "patient")
+        weights = self._earlier if episode < self._earlier_episodes else self._weights
+        return Ratings(report.sequence, rate(report.features, weights, generator, self._habits), report.features)

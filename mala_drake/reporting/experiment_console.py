@@ -7,6 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
@@ -81,8 +82,9 @@ class ExperimentConsole:
     def show(self, summary: dict[str, Any]) -> None:
         """Prints the figures of each condition and patient."""
         self._progress.stop()
-        table = Table("patient", title=summary["experiment"], title_justify="left")
-        for heading in ("converged", "after", "best d", "final d", "dominant", "plans", "delivered", "hits"):
+        table = Table(title=summary["experiment"], title_justify="left", box=SIMPLE_HEAD, padding=0, show_edge=False)
+        table.add_column("patient", no_wrap=True)
+        for heading in ("converged", "after", "final d", "dominant", "plans", "delivered", "hits"):
             table.add_column(heading, justify="right", no_wrap=True)
         main = {summary["scenario"]["learner"]["name"]: summary} if summary["condition"] == MAIN else {}
         for condition, results in {**main, **summary["conditions"]}.items():
@@ -106,7 +108,6 @@ def _cells(figures: dict[str, Any]) -> tuple[str, ...]:
     return (
         f"{figures['converged']}/{figures['runs']}",
         "never" if figures["convergence_episode"] is None else f"{figures['convergence_episode']:g}",
-        f"{figures['best_distance']:.3f}",
         f"{figures['final_distance']:.3f}",
         "-" if right is None else f"{right}/{figures['runs']}",
         str(len(figures["plan_variants"])),

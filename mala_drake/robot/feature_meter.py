@@ -13,7 +13,9 @@ from pydrake.common.value import Value
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
 from mala_drake.clock import METER_OFFSET, TICK
+from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Task, TaskReport
+from mala_drake.randomness import keyed_generator
 from mala_drake.robot.action_marks import SUMMED, ActionMarks, mark_action
 from mala_drake.ward.congestion import sample
 from mala_drake.ward.dishes import presentation_error
@@ -32,11 +34,14 @@ from mala_drake.ward.ward_map import Ward
 FASTEST = 3.0
 """Metres per second; a robot that got somewhere faster was carried, and that is nobody's driving."""
 
+_NAME = "feature_meter"
+
 _Sums = namedview(
     "_Sums",
     [
         "task",  # Sequence of the task that is measured, 0 before the first one.
         "closed",  # 1 once it is finished.
+        "risk_scale",  # Of the congestion that there really is, to that of the map.
         "duration",  # Seconds.
         "risk",
         "charge_used",
@@ -77,6 +82,9 @@ class FeatureMeter(LeafSystem):
     `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not counted as
     negative use. The approach error is that of the pose from which things are handed over. A robot state that is not
     finite, or farther away than the robot can have driven, adds time but no driving.
+
+    The ward may be busier on one day than on another, which nobody knows beforehand: then the risk of each episode is
+    that of the map times a number that depends on the seed and the episode.
     """
 
     def __init__(
@@ -85,6 +93,8 @@ class FeatureMeter(LeafSystem):
         *,
         scales: Mapping[str, FeatureScales] = FEATURE_SCALES,
         ideal: tuple[float, float, float] = IDEAL_HAND_OVER,
+        risk_variation: float = 0.0,
+        seed: int = 0,
     ) -> None:
         """Constructs the meter.
 
@@ -92,11 +102,21 @@ class FeatureMeter(LeafSystem):
             ward: the map.
             scales: what counts as 1, by the name of the task; tasks not named have the default scales.
             ideal: the pose (x, y, yaw) from which the patient would like things to be handed over.
+            risk_variation: v in [0, 1]: the risk is scaled by U(1 - v, 1 + v) in each episode.
+            seed: of the run.
+
+        Raises:
+            BadInput: if the variation is not in [0, 1] or the seed is negative.
         """
         super().__init__()
         self._rates = FeatureRates(ward)
         self._scales = {name: value.as_array() for name, value in scales.items()}
         self._ideal = ideal
+        if not 0.0 <= risk_variation <= 1.0:
+            raise BadInput("world.risk_variation", str(risk_variation), "a number in [0, 1]")
+        self._risk_variation = risk_variation
+        keyed_generator(seed, 0, _NAME)  # Refuses a bad seed now rather than in the simulation.
+        self._seed = seed
         self._task = self.DeclareAbstractInputPort("task", Value(Task()))
         self._task_report = self.DeclareAbstractInputPort("task_report", Value(TaskReport()))
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
@@ -142,6 +162,8 @@ class FeatureMeter(LeafSystem):
         sums[:] = 0.0
         sums.task = task.sequence
         sums.approach_error = worst_approach_error(task.name)
+        generator = keyed_generator(self._seed, task.episode, _NAME)
+        sums.risk_scale = 1.0 + self._risk_variation * generator.uniform(-1.0, 1.0)
         sums.begun = context.get_time()
         sums.charge_at_start = sums.charge = self._charge.Eval(context)[0]
         sums.x, sums.y = self._robot_state.Eval(context)[:2]
@@ -160,7 +182,7 @@ class FeatureMeter(LeafSystem):
         middles, lengths = sample([came_from, (x, y)])
         speeds = np.full(len(lengths), lengths.sum() / elapsed)
         time = elapsed / len(lengths)  # All pieces of one chord are equally long.
-        sums.risk += self._rates.risk_rate(middles, speeds).sum() * time
+        sums.risk += sums.risk_scale * self._rates.risk_rate(middles, speeds).sum() * time
         sums.discomfort += self._rates.discomfort_rate(middles, speeds).sum() * time
         handing_over = _handing_over(self._action.Eval(context))
         if handing_over is not None:

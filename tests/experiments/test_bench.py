@@ -36,7 +36,7 @@ def test_each_benchmark_can_be_run_without_arguments(name):
 
 def test_an_unknown_benchmark_is_refused():
     with pytest.raises(
-        BadInput, match=r"bench: 'patience'; expected one of plant, mpc, agreement, plan, sensitivities"
+        BadInput, match=r"bench: 'patience'; expected one of plant, mpc, agreement, plan, episode, sensitivities"
     ):
         mut.run_benchmarks("patience")
 

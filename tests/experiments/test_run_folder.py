@@ -161,6 +161,33 @@ def test_a_folder_that_cannot_be_made_is_told_in_one_line(tmp_path):
         mut.RunFolder(tmp_path / "file" / "run")
 
 
+@pytest.mark.parametrize("calls", [1, 2])  # Of the checkpoint, and of the line.
+def test_a_full_disk_is_told_in_one_line_and_loses_nothing(done, fake_episode, monkeypatch, calls):
+    lines = content(done)
+    (done / "episodes.jsonl").write_text("".join(line + "\n" for line in lines[:-1]))
+
+    class Full(DyingSystem):
+        def __getattr__(self, name):
+            call = super().__getattr__(name)
+
+            def told(*arguments):
+                try:
+                    return call(*arguments)
+                except Killed:
+                    raise OSError(28, "No space left on device") from None
+
+            return told if name == "write" else getattr(os, name)
+
+    files = mut.RunFolder(done)
+    with monkeypatch.context() as patch:
+        patch.setattr("mala_drake.experiments.durable_files.os", Full(calls, 0.3))
+        with pytest.raises(BadInput, match="No space left"):
+            files.append(*fake_episode(EpisodeWork(SCENARIO, files.episodes, files.carried)))
+    files.close()
+    go_on(done, fake_episode)
+    assert content(done) == lines
+
+
 def test_the_checkpoint_is_numbers_alone(done):
     text = (done / "checkpoint.json").read_text()
     assert set(text) <= set('{}[]:,. "\n0123456789-e+' + "carried_after" + "ticks" + "learners" + "preference_learner")

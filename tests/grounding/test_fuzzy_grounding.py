@@ -56,6 +56,15 @@ def test_at_a_place_its_atom_holds(dut):
     assert dut.memberships.value(at("pantry")) == 0.0
 
 
+def test_without_degrees_the_same_place_holds_and_of_two_the_expected_one():
+    crisp = Probe(location_membership=mut.AlphaCut(mut.SaturatedRamp()))
+    crisp.fix(robot_state=[5.0, 16.5, 1.0, 0.3, 0.0, 0.1])
+    assert crisp.symbolic_state == SymbolicState((at("pharmacy_north"),), "pharmacy_north", 1.0)
+    assert crisp.memberships.values[:3] == (0.0, 0.0, 1.0)
+    crisp.fix(robot_state=[5.0, 15.7, 1.0, 0.3, 0.0, 0.1])
+    assert crisp.symbolic_state.place == ""
+
+
 def test_in_transit_no_place_holds_although_memberships_are_positive(dut):
     dut.fix(robot_state=[0.0, 3.0, 0.0, 1.5, 0.0, 0.0])
     assert dut.symbolic_state == SymbolicState((), "", 1.0)

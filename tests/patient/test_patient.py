@@ -47,6 +47,20 @@ def test_an_episode_is_rated_once_however_long_its_report_stands():
     assert again == first
 
 
+def test_a_patient_with_a_change_of_mind_rates_the_first_episodes_by_earlier_weights():
+    earlier = mut.PROFILES["safety_first"]
+    said = ratings_of(map(delivered, (1, 2, 3)), noise=0.0, earlier_weights=earlier, earlier_episodes=2)
+    for ratings, weights in zip(said, (earlier, earlier, WEIGHTS), strict=True):
+        assert ratings.values == pytest.approx([5 - 4 * f * w for f, w in zip(FEATURES, weights, strict=True)])
+
+
+def test_the_change_of_mind_is_at_an_episode_of_the_run_not_of_the_process():
+    earlier = mut.PROFILES["safety_first"]
+    options = {"noise": 0.0, "earlier_weights": earlier, "earlier_episodes": 3}
+    (first,) = ratings_of([delivered(1)], first_episode=3, **options)
+    assert first.values == pytest.approx([5 - 4 * f * w for f, w in zip(FEATURES, WEIGHTS, strict=True)])
+
+
 def test_each_episode_has_noise_of_its_own():
     first, second = ratings_of([delivered(1), delivered(2)])
     assert second.sequence == 2

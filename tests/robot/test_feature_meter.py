@@ -7,6 +7,7 @@ from pydrake.systems.analysis import Simulator
 
 import mala_drake.robot.feature_meter as mut
 from mala_drake.clock import METER_OFFSET, TICK
+from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Outcome, Task, TaskReport
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.dishes import DISHES
@@ -70,6 +71,36 @@ def drive(stage, path):
 
 def test_drawn_ports_are_the_real_ports(ward, assert_port_box):
     assert_port_box(mut.FeatureMeter(ward))
+
+
+def risk_on(ward, *, episode, **options):
+    """The risk of one and the same drive, in an episode."""
+    stage = Stage(ward, **options)
+    stage.task.GetMutableData().set_value(Task(2, "medication", episode))
+    stage.simulator.AdvanceTo(stage.context.get_time() + TICK)
+    drive(stage, make_drive_path(leg_planner(ward).between("home", "pharmacy_north"), Congestion(ward)))
+    stage.report.GetMutableData().set_value(TaskReport(2, finished=True, success=True))
+    stage.tick()
+    return dict(stage.output("episode_report").details)
+
+
+def test_on_a_busy_day_risk_alone_is_larger_and_nobody_knows_beforehand(ward):
+    usual = risk_on(ward, episode=0)
+    days = [risk_on(ward, episode=episode, risk_variation=0.15, seed=3) for episode in range(6)]
+    factors = [day["risk"] / usual["risk"] for day in days]
+    assert len(set(factors)) == 6
+    assert all(0.85 <= factor <= 1.15 for factor in factors)
+    assert max(factors) - min(factors) > 0.05
+    for day in days:
+        assert {**day, "risk": 0.0} == {**usual, "risk": 0.0}
+    assert risk_on(ward, episode=2, risk_variation=0.15, seed=3) == days[2]
+    assert risk_on(ward, episode=2, risk_variation=0.15, seed=4) != days[2]
+
+
+@pytest.mark.parametrize("variation", [-0.1, 1.1, math.nan])
+def test_a_variation_that_makes_risk_negative_is_refused(ward, variation):
+    with pytest.raises(BadInput, match="risk_variation"):
+        mut.FeatureMeter(ward, risk_variation=variation)
 
 
 @pytest.mark.parametrize(

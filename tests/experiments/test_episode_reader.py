@@ -1,0 +1,43 @@
+"""Reading episodes back: what was written is what is read."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from mala_drake.errors import BadInput
+from mala_drake.experiments import episode_reader as mut
+
+
+def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode_record):
+    written = [
+        episode_record(),
+        episode_record(episode=1, success=False, failure="no way", ratings=[None] * 5, plan_cost=math.nan),
+    ]
+    (tmp_path / "file").write_text("".join(record.to_json() + "\n" for record in written))
+    records, torn = mut.read_episodes(tmp_path / "file")
+    assert not torn
+    assert [record.to_json() for record in records] == [record.to_json() for record in written]
+    assert math.isnan(records[1].plan_cost)
+
+
+def test_a_torn_last_line_is_left_out_and_told(tmp_path, episode_record):
+    line = episode_record().to_json()
+    (tmp_path / "file").write_text(line + "\n" + line[:50])
+    records, torn = mut.read_episodes(tmp_path / "file")
+    assert (len(records), torn) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"), [("{\n{}\n", "line 1: is not JSON"), ("[]\n", "line 1: is not an object"), ("{}\n", "has no")]
+)
+def test_any_other_line_that_is_no_episode_is_told_in_one_line(tmp_path, text, words):
+    (tmp_path / "file").write_text(text)
+    with pytest.raises(BadInput, match=words):
+        mut.read_episodes(tmp_path / "file")
+
+
+def test_a_file_that_is_not_there_is_told_in_one_line(tmp_path):
+    with pytest.raises(BadInput, match="cannot be read"):
+        mut.read_episodes(tmp_path / "file")
