@@ -15,6 +15,7 @@ from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder, InputPort, OutputPort
 from pydrake.systems.primitives import Adder, ConstantValueSource, ConstantVectorSource
 
+from mala_drake.clock import TICK
 from mala_drake.messages import ArmCommand, MagnetCommand, Message
 from mala_drake.robot.arm import Arm
 from mala_drake.robot.arm_kinematics import PAD_RADIUS, STOWED, pad_position
@@ -27,6 +28,7 @@ from mala_drake.robot.magnet import Magnet
 from mala_drake.robot.plant import AddCareRobot, AddFloor, MakeCarePlant
 from mala_drake.robot.robot_parameters import NOMINAL
 from mala_drake.robot.safety_monitor import SafetyMonitor
+from mala_drake.robot.sleeping_boxes import SleepingBoxes
 from mala_drake.robot.state_estimator import StateEstimator
 from mala_drake.ward.items import ITEM_HALF_HEIGHT, Item, all_items
 from mala_drake.ward.ward_map import LoadWard
@@ -44,11 +46,14 @@ def bench_plant(*, seconds: float = 10.0, repetitions: int = 3) -> list[dict[str
         seconds: simulated, for each measurement.
         repetitions: measurements of each configuration, of which the fastest counts.
     """
-    configurations: dict[str, tuple[Collection[str], int]] = {"robot alone": ((), 0), "all systems": (SYSTEMS, 0)}
+    rigs = {"robot alone": _Rig(()), "all systems": _Rig(SYSTEMS)}
     for name in SYSTEMS:
-        configurations[f"all but {name}"] = ([other for other in SYSTEMS if other != name], 0)
-    configurations["all, two boxes carried"] = (SYSTEMS, 2)
-    rigs = {name: _Rig(systems, carried) for name, (systems, carried) in configurations.items()}
+        rigs[f"all but {name}"] = _Rig([other for other in SYSTEMS if other != name])
+    rigs["all, two boxes carried"] = _Rig(SYSTEMS, carried=2)
+    rigs["all, boxes asleep"] = _Rig(SYSTEMS, sleep=True)
+    rigs["all, boxes of a meal"] = _Rig(SYSTEMS, tasks=("meal",))
+    rigs["all, boxes of both tasks"] = _Rig(SYSTEMS, tasks=("medication", "meal"))
+    rigs["all, boxes of both tasks asleep"] = _Rig(SYSTEMS, tasks=("medication", "meal"), sleep=True)
     times: dict[str, list[tuple[float, float]]] = {name: [] for name in rigs}
     for _ in range(repetitions):
         # In turn, so that a busy minute of the machine falls on all of them alike.
@@ -69,13 +74,24 @@ def _row(name: str, measured: Sequence[tuple[float, float]]) -> dict[str, Any]:
 class _Rig:
     """A robot on a flat floor with some of its systems; what the others would send is constant."""
 
-    def __init__(self, systems: Collection[str], carried: int) -> None:
-        items = all_items(LoadWard(), ("medication",)) if "magnet" in systems else ()
+    def __init__(
+        self,
+        systems: Collection[str],
+        *,
+        carried: int = 0,
+        tasks: Collection[str] = ("medication",),
+        sleep: bool = False,
+    ) -> None:
+        """Builds it with the boxes of some tasks, some of them carried, the others asleep or awake."""
+        items = all_items(LoadWard(), tasks) if "magnet" in systems else ()
+        self._clamped = ClampedItems(tuple((item.name, item.shelf_pose) for item in items[carried:]))
+        self._sleep = sleep
         self._builder = DiagramBuilder()
-        self._plant, scene_graph = MakeCarePlant(self._builder)
-        self._robot = AddCareRobot(self._plant, scene_graph)
+        self._plant, self._scene_graph = MakeCarePlant(self._builder)
+        self._robot = AddCareRobot(self._plant, self._scene_graph)
         AddFloor(self._plant)
-        bodies = AddItems(self._plant, scene_graph, items, self._robot)
+        bodies = AddItems(self._plant, self._scene_graph, items, self._robot)
+        self._bodies = bodies.bodies
         self._carried = bodies.bodies[:carried]
         self._plant.Finalize()
         self._plant_state = self._plant.get_state_output_port(self._robot.robot)
@@ -100,6 +116,17 @@ class _Rig:
             self._plant.SetVelocities(context, body.model_instance(), velocity)
         simulator.Initialize()
         return simulator
+
+    def advance(self, simulator: Simulator, seconds: float) -> None:
+        """Simulates as a run does, tick by tick."""
+        context = simulator.get_mutable_context()
+        boxes = SleepingBoxes(
+            self._plant, self._scene_graph, self._robot.base, self._bodies, lambda: self._clamped, context
+        )
+        for tick in range(1, max(1, round(seconds / TICK)) + 1):
+            if self._sleep:
+                boxes.update()
+            simulator.AdvanceTo(min(tick * TICK, seconds))
 
     def _add_drive(self, systems: Collection[str]) -> None:
         if "drivetrain" not in systems:
@@ -138,9 +165,8 @@ class _Rig:
             magnet = self._builder.AddSystem(Magnet(self._plant, self._robot, bodies))
             self._connect(self._plant.get_state_output_port(), magnet.GetInputPort("state"))
             held = tuple((item.name, pad) for pad, item in enumerate(items[:carried]))
-            clamped = tuple((item.name, item.shelf_pose) for item in items[carried:])
             self._feed(magnet.GetInputPort("magnet"), MagnetCommand(held))
-            self._feed(magnet.GetInputPort("clamped"), ClampedItems(clamped))
+            self._feed(magnet.GetInputPort("clamped"), self._clamped)
             forces.append(magnet.get_output_port())
         if forces:
             adder = self._builder.AddSystem(Adder(len(forces), self._plant.num_velocities()))
@@ -173,6 +199,6 @@ def _measure(rig: _Rig, seconds: float) -> tuple[float, float]:
     """Wall and processor time, milliseconds for one simulated second."""
     simulator = rig.start()
     wall, processor = time.perf_counter(), time.process_time()
-    simulator.AdvanceTo(seconds)
+    rig.advance(simulator, seconds)
     scale = 1e3 / seconds
     return scale * (time.perf_counter() - wall), scale * (time.process_time() - processor)

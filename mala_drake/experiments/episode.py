@@ -16,7 +16,7 @@ from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.experiments.episode_watch import EpisodeWatch
 from mala_drake.scenario import Scenario
-from mala_drake.station import StartEpisode, learner_states_of
+from mala_drake.station import SleepingBoxesOf, StartEpisode, learner_states_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,11 +86,12 @@ def simulate_episode(
     simulator = Simulator(station, context)
     simulator.set_target_realtime_rate(realtime_rate)
     simulator.Initialize()
-    watch = EpisodeWatch(station, context, scenario, episode)
+    watch, boxes = EpisodeWatch(station, context, scenario, episode), SleepingBoxesOf(station, context)
     ticks = carried.ticks
     limit = ticks + round(scenario.episode_time_limit / TICK)
     while not watch.finished and ticks < limit:
         ticks += 1  # The watch looks at the ports each tick: every report is seen.
+        boxes.update()
         simulator.AdvanceTo(ticks * TICK)
         for text in watch.look():
             if on_action:
