@@ -118,3 +118,20 @@ def test_the_reserve_of_a_leg_from_in_transit_is_never_below_its_prediction(scal
     way = ("in_transit", "supply_b")
     for name, ratio in (("nav-charge", scale), ("nav-battery", reserve)):
         assert float(known[(name, *way)]) == pytest.approx(ratio * float(predicted[(name, *way)]), abs=2e-4)
+
+
+def test_a_reserve_that_a_problem_wants_larger_than_the_way_stays_so():
+    kept, way = ("nearest-charger-battery", "a"), ("nav-battery", "a", "c")
+    predicted = {kept: Fraction(3, 10), ("nearest-charger-battery", "c"): Fraction(0), way: Fraction(1, 10)}
+    assert mut.learned_fluents(predicted, LearnedCosts(((way, 0.2),), updates=1))[kept] == Fraction(3, 10)
+    assert mut.learned_fluents(predicted, LearnedCosts(((way, 0.4),), updates=1))[kept] == pytest.approx(0.4)
+
+
+def test_legs_that_take_more_in_general_are_counted_on_to_take_more():
+    """A leg not driven yet: its learned mean is above its prediction, and so must be its reserve."""
+    way = ("home", "supply_b")
+    more = float(PREDICTED[("nav-battery", *way)]) + 0.05
+    believed = LearnedCosts(
+        ((("nav-charge", *way), more), (("nav-battery", *way), float(PREDICTED[("nav-battery", *way)]))), updates=1
+    )
+    assert mut.learned_fluents(PREDICTED, believed)[("nav-battery", *way)] == pytest.approx(more)
