@@ -20,6 +20,7 @@ from mala_drake.messages import (
 )
 from mala_drake.preferences import CRITERIA
 from mala_drake.scenario import Scenario
+from mala_drake.ward.in_place_actions import Verb, in_place_action
 
 
 class EpisodeWatch:
@@ -148,5 +149,7 @@ def describe(action: Action) -> str:
     place = action.place.replace("_", " ")
     if action.kind is ActionKind.MOVE:
         return f"drive to {place}"
-    words = action.name.replace("_", " ")
+    work = in_place_action(action.name, action.arguments)
+    name = action.name if work is None or work.verb is not Verb.COLLECT_INGREDIENT else f"collect_{work.kind}"
+    words = name.replace("_", " ")
     return f"{words} at {place}" if place and "bedside" not in words else words

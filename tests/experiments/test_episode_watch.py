@@ -80,6 +80,11 @@ def test_an_episode_cut_short_is_a_failure_with_what_was_measured_so_far(station
             Action(1, ActionKind.IN_PLACE, "deliver_on_bedside_table_left", (), place="patient_bed_left"),
             "deliver on bedside table left",
         ),
+        (
+            Action(1, ActionKind.IN_PLACE, "collect_ingredient", ("robot1", "pantry", "bread"), place="pantry"),
+            "collect bread at pantry",
+        ),
+        (Action(1, ActionKind.IN_PLACE, "choose_hot_meal", ("robot1",), place=""), "choose hot meal"),
         (Action(1, ActionKind.IN_PLACE, "wait"), "wait"),
     ],
 )
