@@ -38,8 +38,8 @@ No place is just there; the nearer a bedside is to it, in distance and direction
 class FeatureScales:
     """What counts as 1: seconds, risk, charge, discomfort, approach error. The defaults are those of `medication`."""
 
-    time: float = 120.0
-    safety: float = 0.222
+    time: float = 123.0
+    safety: float = 0.225
     battery: float = 1.0
     proximity: float = 10.0
     approach: float = 1.25

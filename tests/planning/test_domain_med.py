@@ -142,7 +142,7 @@ def test_the_optimal_plan_is_the_best_of_all_rounds(
     assert plan.cost is not None
     assert float(plan.cost) == pytest.approx(first.cost(weights), abs=1e-3)
     assert stops_of(task, plan.actions) == first.stops
-    assert second.cost(weights) - first.cost(weights) > 0.008  # No near tie between choices that matter.
+    assert second.cost(weights) - first.cost(weights) > 0.007  # No near tie between choices that matter.
 
 
 def test_the_optimal_plan_is_the_best_of_all_rounds_at_random_weights(
