@@ -112,7 +112,7 @@ class PlannerConfig:
 class ControlConfig:
     """The model predictive controller and the rules of a leg."""
 
-    solver: str = "snopt"
+    solver: str = "rti"  # rti, snopt or ipopt: three solvers of one problem.
     sqp_iterations: int = 20  # Of solver rti, at most, per sample; 1 is the real-time iteration.
     horizon: int = 20  # Stages of one control period.
     horizon_kind: str = "receding"  # receding (always as long), or shrinking (to the end of the leg).
