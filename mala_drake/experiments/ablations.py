@@ -37,6 +37,10 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
             {"grounding": {"membership": "crisp"}},
             "an atom is true or false, without degrees in between",
         ),
+        "no_learned_costs": (
+            {"planner": {"learned_costs": False}},
+            "the planner predicts what actions cost, and never learns what they did cost",
+        ),
         "medication_only": ({"task": "medication"}, "every episode is a medication round"),
         "meal_only": ({"task": "meal"}, "every episode is a meal"),
         # Things that are harder.
