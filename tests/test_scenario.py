@@ -48,9 +48,9 @@ def set_number(scenario, prefix, name, number):
 NUMBERS = sorted(numbers_of(mut.Scenario()))
 
 
-def test_the_default_scenario_is_two_medication_episodes():
+def test_the_default_scenario_is_a_round_of_medicine_and_a_meal():
     scenario = mut.LoadScenario()
-    assert (scenario.task, scenario.episodes, scenario.random_seed) == ("medication", 2, 0)
+    assert (scenario.task, scenario.episodes, scenario.random_seed) == ("alternate", 2, 0)
     assert scenario.true_weights == PROFILES["speed_oriented"]
 
 
