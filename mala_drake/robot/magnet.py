@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from mala_drake.messages import MagnetCommand
 from mala_drake.robot.arm_kinematics import PAD_OFFSETS
 from mala_drake.robot.held_box import box_at_pad
 from mala_drake.robot.item_messages import ClampedItems
-from mala_drake.robot.items import ITEM_MASS, ItemBodies
+from mala_drake.robot.items import ITEM_MASS, ItemBodies, X_WI_at
 from mala_drake.robot.magnet_law import GRAVITY, MagnetLaw, Place
 from mala_drake.robot.plant import ARM_JOINTS, CareRobot
 
@@ -128,7 +127,8 @@ class Magnet(LeafSystem):
         boxes = [self._item(name) for name, _ in message.items]
         resting = np.zeros((len(boxes), _BODY_STATE))
         for row, (_, pose) in zip(resting, message.items, strict=True):
-            row[:7] = math.cos(0.5 * pose.yaw), 0.0, 0.0, math.sin(0.5 * pose.yaw), pose.x, pose.y, pose.z
+            # The sign of the quaternion is that of the plant's default pose, or a box at rest would never seem to be.
+            row[:7] = *X_WI_at(pose).rotation().ToQuaternion().wxyz(), pose.x, pose.y, pose.z
         return _Clamps(
             places=tuple(Place((pose.x, pose.y, pose.z), pose.yaw) for _, pose in message.items),
             forces=tuple(slice(box.force.start, box.force.stop) for box in boxes),

@@ -22,7 +22,7 @@ from mala_drake.ward.items import ITEM_HALF_HEIGHT, Item, ItemPose
 
 LEDGE = 0.78
 ANTIBIOTIC = Item("p/med_antibiotic", "med_antibiotic", "p", ItemPose(0.70, 0.0, LEDGE + ITEM_HALF_HEIGHT, 0.0))
-INSULIN = Item("p/med_insulin", "med_insulin", "p", ItemPose(0.70, 0.24, LEDGE + ITEM_HALF_HEIGHT, 3.0))
+INSULIN = Item("p/med_insulin", "med_insulin", "p", ItemPose(0.70, 0.24, LEDGE + ITEM_HALF_HEIGHT, 4.0))
 VITAMIN = Item("s/supp_vitamin_d", "supp_vitamin_d", "s", ItemPose(0.70, -0.24, LEDGE + ITEM_HALF_HEIGHT, 0.4))
 ITEMS = (ANTIBIOTIC, INSULIN, VITAMIN)
 ALL_CLAMPED = ClampedItems(tuple((item.name, item.shelf_pose) for item in ITEMS))
@@ -129,6 +129,17 @@ def test_at_rest_the_force_is_the_boxes_weight_and_nothing_else(make_magnet_benc
     force = dut.output()
     assert np.sort(force)[-3:] == pytest.approx([ITEM_MASS * GRAVITY] * 3)
     assert np.count_nonzero(force) == 3
+
+
+def test_nothing_is_computed_for_boxes_at_rest(make_magnet_bench, monkeypatch):
+    """Whatever their yaw: half a turn and more has another quaternion than the pose it is made from."""
+    dut = make_magnet_bench()
+
+    def never(*arguments):
+        pytest.fail("a wrench was computed")
+
+    monkeypatch.setattr(mut.MagnetLaw, "wrench", never)
+    dut.wait(0.5)
 
 
 def test_a_clamped_box_that_is_nudged_returns(make_magnet_bench):
