@@ -3,7 +3,9 @@
 import pytest
 
 import mala_drake.planning.validation as mut
-from mala_drake.planning import Planner
+from mala_drake.patient.profiles import PROFILES
+from mala_drake.planning import Planner, PlanningTask
+from mala_drake.resources import domains_folder
 
 NAMES = ["blocks", "briefcase", "care", "counters", "delivery", "depots", "gripper", "hanoi", "lift", "logistics"]
 NAMES += ["sailing", "zenotravel"]
@@ -21,6 +23,20 @@ def test_an_external_validator_accepts_the_plans_at_their_cost(load, request, na
     assert report.valid
     if report.metric is not None:
         assert report.metric == pytest.approx(float(plan.cost), abs=1e-9)
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("name", ["med", "meal"])
+def test_an_external_validator_accepts_what_is_done_for_a_patient(name, profile):
+    kairos = pytest.importorskip("kairos")
+    domain, problem = ((domains_folder() / f"{part}_{name}.pddl").read_text() for part in ("domain", "problem"))
+    for i, weight in enumerate(PROFILES[profile]):
+        problem = problem.replace(f"(= (w{i}) 0.2)", f"(= (w{i}) {weight})")
+    plan = Planner(PlanningTask.parse(domain, problem)).solve()
+    posed = kairos.parse_problem(problem, kairos.parse_domain(domain))
+    report = kairos.validate(posed, kairos.parse_plan("\n".join(plan.actions)))
+    assert report.valid
+    assert report.metric == pytest.approx(float(plan.cost), abs=1e-9)
 
 
 @pytest.mark.parametrize("name", NAMES)
