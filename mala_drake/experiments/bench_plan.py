@@ -1,4 +1,4 @@
-"""Benchmark of the planner: reading, grounding, and replanning the medication task with new weights and charge."""
+"""Benchmark of the planner: reading, grounding, and replanning both tasks with new weights."""
 
 from __future__ import annotations
 
@@ -15,12 +15,18 @@ _REPLANS = 200
 
 
 def bench_plan() -> list[dict[str, Any]]:
-    """A row for A* and one for blind search: medians and percentiles in milliseconds, and mean expansions."""
+    """A row a task for A* and one for blind search: medians and percentiles in milliseconds, and mean expansions."""
+    return [row for name, stem in (("medication", "med"), ("meal", "meal")) for row in _rows(name, stem)]
+
+
+def _rows(name: str, stem: str) -> list[dict[str, Any]]:
     folder = domains_folder()
     started = time.perf_counter()
-    task = PlanningTask.load(folder / "domain_med.pddl", folder / "problem_med.pddl")
+    task = PlanningTask.load(folder / f"domain_{stem}.pddl", folder / f"problem_{stem}.pddl")
     load_ms = 1e3 * (time.perf_counter() - started)
-    return [_replan(task, search, count, load_ms) for search, count in (("astar", _REPLANS), ("ucs", 1))]
+    return [
+        {"task": name} | _replan(task, search, count, load_ms) for search, count in (("astar", _REPLANS), ("ucs", 1))
+    ]
 
 
 def _replan(task: PlanningTask, search: Any, count: int, load_ms: float) -> dict[str, Any]:
