@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mala_drake
 from mala_drake.experiments.compute_episode import EpisodeWork
 from mala_drake.experiments.episode import Carried
 from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion
@@ -97,3 +100,19 @@ def whole_run() -> Callable[..., tuple[list[str], list[Carried]]]:
         return lines, carried
 
     return run
+
+
+@pytest.fixture(scope="session")
+def dask_address() -> Iterator[str]:
+    """The address of a scheduler with two workers, which import this very tree."""
+    distributed = pytest.importorskip("distributed")
+    before = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = str(Path(mala_drake.__file__).parents[1])
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    try:
+        yield cluster.scheduler_address
+    finally:
+        cluster.close()
+        os.environ.pop("PYTHONPATH")
+        if before is not None:
+            os.environ["PYTHONPATH"] = before

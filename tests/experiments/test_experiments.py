@@ -113,6 +113,14 @@ def test_interrupted_by_the_keyboard_and_gone_on_with_in_two_processes_it_comes_
     assert results(tmp_path / "results") == results(folder / "results")
 
 
+def test_on_a_dask_cluster_it_comes_to_the_same(alone, tmp_path, dask_address):
+    folder, _ = alone
+    options = ExperimentOptions(scenario=folder / "short.yaml", profiles=("safety_first",), seeds=(0, 1), episodes=2)
+    execution = mut.Execution(out=tmp_path, executor="dask", address=dask_address)
+    mut.run_experiment(CONVERGENCE, options, execution, watcher=Nobody())
+    assert results(tmp_path) == results(folder / "results")
+
+
 @pytest.mark.parametrize(
     ("kind", "changes", "words"),
     [

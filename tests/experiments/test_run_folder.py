@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mala_drake.errors import BadInput
@@ -58,6 +58,7 @@ def content(path):
     return (path / "episodes.jsonl").read_text().splitlines()
 
 
+@settings(max_examples=30)
 @given(st.lists(st.tuples(st.integers(1, 60), st.floats(0.0, 1.0)), max_size=6))
 def test_a_run_that_is_killed_anywhere_and_gone_on_with_is_the_undisturbed_run(fake_episode, whole_run, kills):
     with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:

@@ -51,7 +51,13 @@ class DaskExecutor(AbstractExecutor):
         return self._jobs or max(1, sum(self._client.nthreads().values()))
 
     def submit(self, key: Hashable, argument: Any) -> None:
-        """Sends the call to the worker that had this key last, if it is still there."""
+        """Sends the call to the worker that had this key last, if it is still there.
+
+        Raises:
+            BadInput: when the scheduler has gone for good.
+        """
+        if self._client.status in ("closing", "closed"):
+            raise BadInput("--address", "the scheduler has gone", "one that stays; --resume goes on")
         place = self._places.get(key)
         future = self._client.submit(
             _call, self._function, argument, pure=False, workers=place, allow_other_workers=place is not None

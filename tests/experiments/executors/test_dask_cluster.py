@@ -2,40 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
-from pathlib import Path
 
 import pytest
 
-import mala_drake
 from mala_drake.errors import BadInput
-from mala_drake.experiments.compute_episode import EpisodeWork, compute_episode
-from mala_drake.experiments.episode import Carried
 from mala_drake.experiments.executors import dask_cluster as mut
-from mala_drake.scenario import Scenario
 
-distributed = pytest.importorskip("distributed")
-
-
-@pytest.fixture(scope="module")
-def address():
-    """The address of a scheduler with two workers, which import this very tree."""
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = str(Path(mala_drake.__file__).parents[1])
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-    try:
-        yield cluster.scheduler_address
-    finally:
-        cluster.close()
-        os.environ.pop("PYTHONPATH")
-        if before is not None:
-            os.environ["PYTHONPATH"] = before
+pytest.importorskip("distributed")
 
 
-def test_calls_are_spread_over_the_cluster_and_a_key_keeps_its_worker(address):
+def test_calls_are_spread_over_the_cluster_and_a_key_keeps_its_worker(dask_address):
     places = {}
-    with mut.DaskExecutor(eval, address=address) as executor:
+    with mut.DaskExecutor(eval, address=dask_address) as executor:
         assert executor.capacity == 2
         for _ in range(3):
             for key in "ab":
@@ -47,8 +26,8 @@ def test_calls_are_spread_over_the_cluster_and_a_key_keeps_its_worker(address):
     assert os.getpid() not in places.values()
 
 
-def test_a_call_that_raises_is_told_and_the_others_go_on(address):
-    with mut.DaskExecutor(eval, address=address, jobs=3) as executor:
+def test_a_call_that_raises_is_told_and_the_others_go_on(dask_address):
+    with mut.DaskExecutor(eval, address=dask_address, jobs=3) as executor:
         assert executor.capacity == 3
         for key, code in (("bad", "1 / 0"), ("good", "1 + 1"), ("better", "2 + 2")):
             executor.submit(key, code)
@@ -57,16 +36,11 @@ def test_a_call_that_raises_is_told_and_the_others_go_on(address):
     assert (answers["good"].result, answers["better"].result) == (2, 4)
 
 
-def test_an_episode_is_the_same_there(address):
-    work = EpisodeWork(Scenario(episodes=2, episode_time_limit=1.0), 1, Carried(ticks=10))
-    with mut.DaskExecutor(compute_episode, address=address) as executor:
-        executor.submit("run", work)
-        (line, carried) = executor.next_finished().result
-    here, carried_here = compute_episode(work)
-    record, record_here = json.loads(line), json.loads(here)
-    assert record.pop("timing").keys() == record_here.pop("timing").keys()
-    assert record == record_here
-    assert carried == carried_here
+def test_a_scheduler_that_has_gone_is_told_in_one_line(dask_address):
+    executor = mut.DaskExecutor(abs, address=dask_address)
+    executor.close()
+    with pytest.raises(BadInput, match="the scheduler has gone"):
+        executor.submit("a", 1)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://host"])
