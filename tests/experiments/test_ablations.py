@@ -26,6 +26,7 @@ CHANGED = {
     "no_exploration": {"learner.exploration_until": 1.0},
     "no_exploration_decay": {"learner.name": "projected_gradient", "learner.exploration_decay": 0.0},
     "crisp_grounding": {"grounding.membership": "crisp"},
+    "no_learned_costs": {"planner.learned_costs": False},
     "medication_only": {"task": "medication"},
     "meal_only": {"task": "meal"},
     "rating_noise_0.05": {"patient.noise": 0.05},

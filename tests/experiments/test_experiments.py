@@ -19,7 +19,7 @@ from mala_drake.experiments.ablations import ABLATION_KIND
 from mala_drake.experiments.convergence import CONVERGENCE
 from mala_drake.experiments.experiment_kind import ExperimentOptions
 
-SHORT = "{episode_time_limit: 1.0, control: {solver: rti}}"
+SHORT = "{task: medication, episode_time_limit: 1.0}"
 """Episodes that fail for lack of time: cheap, and as deterministic as any."""
 
 
