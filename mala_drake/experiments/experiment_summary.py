@@ -128,13 +128,14 @@ def _error_over_bound(runs: Sequence[tuple[Run, Scenario]]) -> float | None:
     It is for the features that were really seen, with the simplex constraint. None where there is no such bound: of
     ratings without noise, or when too little was rated in some run.
     """
-    if not runs or any(scenario.patient.noise == 0.0 for _, scenario in runs):
+    runs = [(_since_change_of_mind(run, scenario), scenario) for run, scenario in runs]
+    if not runs or any(scenario.patient.noise == 0.0 or not run.episodes for run, scenario in runs):
         return None
     errors = [np.subtract(run.final.weights_after, scenario.true_weights) for run, scenario in runs]
-    bounds = [bounds_of(_since_change_of_mind(run, scenario), scenario.patient.noise)[-1] for run, scenario in runs]
+    bounds = [bounds_of(run, scenario.patient.noise)[-1] for run, scenario in runs]
     return efficiency(errors, bounds) if np.isfinite(bounds).all() else None
 
 
 def _since_change_of_mind(run: Run, scenario: Scenario) -> Run:
     """The run without the episodes that tell nothing about what the patient wants in the end."""
-    return replace(run, episodes=run.episodes[scenario.patient.earlier_episodes :] or run.episodes)
+    return replace(run, episodes=run.episodes[scenario.patient.earlier_episodes :])

@@ -130,3 +130,5 @@ def test_only_what_was_rated_since_a_change_of_mind_can_tell_what_is_wanted(tmp_
     bound = 0.1 / (4 * 0.5) * np.sqrt(0.8)
     expected = np.sqrt(np.mean(np.square((np.array(LEARNED[0]) - WISHES) / bound)))
     assert mut.summarise_experiment(experiment, tmp_path, {})["totals"]["error_over_bound"] == pytest.approx(expected)
+    base.patient.earlier_episodes = 3
+    assert mut.summarise_experiment(experiment, tmp_path, {})["totals"]["error_over_bound"] is None
