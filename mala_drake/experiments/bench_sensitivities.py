@@ -31,9 +31,10 @@ from mala_drake.control.sensitivities import (
     adjoint,
     forward,
 )
+from mala_drake.control.sensitivities.recorded_leg import KNOBS, NOMINAL, RecordedLeg
 from mala_drake.ward.ward_map import LoadWard
 
-from .ward_leg import KNOBS, NOMINAL, WardLeg, record_leg
+from .ward_leg import record_leg
 
 Vector = NDArray[np.float64]
 
@@ -103,7 +104,12 @@ def bench_sensitivities(
 
 
 def _measure_policy(
-    table: _Table, problem: OptimalControlProblem, analysis: SensitivityAnalysis, mpc: Solver, leg: WardLeg, every: int
+    table: _Table,
+    problem: OptimalControlProblem,
+    analysis: SensitivityAnalysis,
+    mpc: Solver,
+    leg: RecordedLeg,
+    every: int,
 ) -> None:
     state, warm_start = leg.initial_state, None
     for i, parameters in enumerate(leg.steps):
@@ -159,7 +165,7 @@ def _differences(analysis: SensitivityAnalysis, mpc: Solver, point: KktPoint, *,
 
 
 def _measure_leg(
-    table: _Table, problem: OptimalControlProblem, analysis: SensitivityAnalysis, mpc: Solver, leg: WardLeg
+    table: _Table, problem: OptimalControlProblem, analysis: SensitivityAnalysis, mpc: Solver, leg: RecordedLeg
 ) -> None:
     loop = ClosedLoop(analysis, mpc, SimulationModel(period=problem.period))
     model, count = leg.steps[0].dynamics.vector, len(leg.steps)

@@ -25,6 +25,9 @@ ROUTE_CLEARANCE = 0.26
 """Metres kept between the body and anything solid along a route, where there is room."""
 
 _TIGHT_CLEARANCE = 0.10  # What a route falls back to where the wide one does not exist.
+GOAL_DISTANCE = BODY_RADIUS + _TIGHT_CLEARANCE + 0.01
+"""Metres that a goal keeps from anything solid so as to have a route; outlines are circumscribed, hence a bit more."""
+
 _NUDGE = 1e-3  # Vertices are moved this much outward, so that edges along an outline do not count as blocked.
 _ESCAPE = 1.0  # Metres around a start that is too close to something, in which a free point is looked for.
 

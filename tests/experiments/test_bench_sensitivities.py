@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 import mala_drake.experiments.bench_sensitivities as mut
+from mala_drake.control.sensitivities.recorded_leg import RecordedLeg
 
 
 def test_rows_have_times_and_the_errors_they_claim(monkeypatch):
@@ -10,7 +11,7 @@ def test_rows_have_times_and_the_errors_they_claim(monkeypatch):
 
     def beginning(*arguments):
         leg = record(*arguments)
-        return mut.WardLeg(leg.initial_state, leg.steps[:12], leg.shares[:12])
+        return RecordedLeg(leg.initial_state, leg.steps[:12], leg.shares[:12])
 
     monkeypatch.setattr(mut, "record_leg", beginning)
     rows = mut.bench_sensitivities(solver="rti", every=12)

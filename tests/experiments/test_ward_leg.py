@@ -9,14 +9,13 @@ import mala_drake.experiments.ward_leg as mut
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegRules
 from mala_drake.control.sensitivities import (
-    LOWER,
-    UPPER,
     ClosedLoop,
     SensitivityAnalysis,
     SimulationModel,
     adjoint,
     forward,
 )
+from mala_drake.control.sensitivities.recorded_leg import KNOBS, NOMINAL
 from mala_drake.ward.ward_map import LoadWard
 
 WARD = LoadWard()
@@ -41,25 +40,6 @@ def test_the_recorded_leg_ends_at_its_place(problem, leg):
     assert all((np.diff(shares) >= 0).all() for shares in leg.shares)
 
 
-def test_the_derivatives_of_the_parameters_are_differences(problem, leg):
-    columns = SensitivityAnalysis(problem).columns
-
-    def columns_at(step, knobs):
-        chosen = leg.with_knobs(knobs, columns).at(step, leg.initial_state).parameters
-        values = np.zeros(columns.parameters.stop)
-        values[: problem.layout.size] = problem.pack(leg.initial_state, chosen)
-        values[columns.slices[LOWER]], values[columns.slices[UPPER]] = chosen.inputs.lower, chosen.inputs.upper
-        return values
-
-    base = np.array([0.1, -0.2, 1.1, 0.9])
-    for step in (0, 25, len(leg.steps) + 5):  # The last parameters stay.
-        schedule = leg.with_knobs(base, columns)
-        by_knobs = schedule.at(step, leg.initial_state).by_knobs
-        for i in range(schedule.knobs):
-            ends = [columns_at(step, base + size * np.eye(4)[i]) for size in (1e-6, -1e-6)]
-            np.testing.assert_allclose(by_knobs[:, i], (ends[0] - ends[1]) / 2e-6, atol=1e-5)
-
-
 def test_a_leg_that_does_not_succeed_is_an_error(problem, monkeypatch):
     monkeypatch.setattr(mut, "LegRules", lambda: LegRules(step_budget=3))
     with pytest.raises(RuntimeError, match="from home to charge_main ended as step_budget"):
@@ -78,7 +58,7 @@ def test_the_sensitivities_of_a_whole_leg(problem, solver, start, goal):
     loop = ClosedLoop(analysis, mpc, SimulationModel(period=problem.period))
     model = leg.steps[0].dynamics.vector
 
-    def run(knobs=mut.NOMINAL, offset=0.0):
+    def run(knobs=NOMINAL, offset=0.0):
         return loop.run(leg.initial_state + offset, leg.with_knobs(knobs, analysis.columns), model, len(leg.steps))
 
     nominal = run()
@@ -91,10 +71,10 @@ def test_the_sensitivities_of_a_whole_leg(problem, solver, start, goal):
             np.testing.assert_allclose(getattr(gradient, name), expected, atol=1e-8 * max(np.abs(expected).max(), 1e-3))
     size = 1e-4
     for i, unit in enumerate(np.eye(4)):
-        ends = [run(mut.NOMINAL + sign * size * unit).states for sign in (1, -1)]
+        ends = [run(NOMINAL + sign * size * unit).states for sign in (1, -1)]
         expected = (ends[0] - ends[1]) / (2 * size)
         scale = np.abs(expected).max()
-        np.testing.assert_allclose(whole.by_knobs.states[..., i], expected, atol=1e-5 * scale, err_msg=mut.KNOBS[i])
+        np.testing.assert_allclose(whole.by_knobs.states[..., i], expected, atol=1e-5 * scale, err_msg=KNOBS[i])
     for i, unit in enumerate(np.eye(6)):
         ends = [run(offset=sign * 1e-5 * unit).states for sign in (1, -1)]
         expected = (ends[0] - ends[1]) / 2e-5

@@ -1,0 +1,84 @@
+"""How a leg ends when its target is moved, against differences of the whole closed loop over the model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import mala_drake.control.sensitivities.target_sensitivity as mut
+from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control.action_parameters import EMPTY_HANDED
+from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
+from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
+from mala_drake.messages import Action, ActionKind
+from mala_drake.ward.congestion import Congestion
+from mala_drake.ward.legs import LegPlanner
+from mala_drake.ward.ward_map import Ward
+
+HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
+THERE = (2.0, 0.6, 0.5)
+GO = Action(1, ActionKind.MOVE, "go_to_there", ("robot1",), "there")
+WEIGHTS = (0.2,) * 5
+
+
+def tools(problem, rules=None):
+    congestion = Congestion(HALL)
+    guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
+    return problem, MakeSolver("rti", problem), guide, congestion
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return OptimalControlProblem()
+
+
+def sensitivity(problem, rules=None):
+    own = mut.TargetSensitivity(*tools(problem, rules))
+    return own(np.zeros(6), THERE, HALL.shapes, action=GO, carrying=False, weights=WEIGHTS)
+
+
+def test_it_is_that_of_differences_of_the_closed_loop(problem):
+    leg = LegRecorder(*tools(problem)).record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS)
+    analysis = SensitivityAnalysis(problem)
+    loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))
+    model, size = leg.steps[0].dynamics.vector, 1e-4
+
+    def end(knob, step):
+        schedule = leg.with_knobs(NOMINAL + step * np.eye(4)[knob], analysis.columns)
+        return loop.run(leg.initial_state, schedule, model, len(leg.steps)).states[-1, :2]
+
+    expected = np.stack([(end(knob, size) - end(knob, -size)) / (2 * size) for knob in range(2)], axis=1)
+    np.testing.assert_allclose(sensitivity(problem), expected, atol=1e-4)
+
+
+def breaking(monkeypatch, at):
+    """Makes the step `at` of every closed loop one without a derivative."""
+    whole = mut.ClosedLoop.run
+
+    def broken(self, *arguments):
+        steps = list(whole(self, *arguments).steps)
+        steps[at] = replace(steps[at], solved=False)
+        return ClosedLoopRun(tuple(steps))
+
+    monkeypatch.setattr(mut.ClosedLoop, "run", broken)
+
+
+def test_a_step_without_a_derivative_long_before_the_end_is_forgotten(problem, monkeypatch):
+    whole = sensitivity(problem)
+    breaking(monkeypatch, 2)
+    np.testing.assert_allclose(sensitivity(problem), whole, atol=0.05)
+
+
+@pytest.mark.parametrize(("at", "why"), [(-1, "no derivative at its end"), (-4, "no derivative near its end")])
+def test_an_end_without_a_derivative_is_an_error(problem, monkeypatch, at, why):
+    breaking(monkeypatch, at)
+    with pytest.raises(RuntimeError, match=why):
+        sensitivity(problem)
+
+
+def test_a_leg_that_fails_in_simulation_is_an_error(problem):
+    with pytest.raises(RuntimeError, match="ended as step_budget"):
+        sensitivity(problem, LegRules(step_budget=3))
