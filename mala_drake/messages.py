@@ -166,6 +166,16 @@ class SymbolicState(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class PlaceMismatch(Message):
+    """How far the robot is from being at the place where the action under way is to lead; place "" is none."""
+
+    place: str = ""
+    error: float = 0.0  # 1 - mu of being at the place, E^psi in its continuous form.
+    gradient: tuple[float, float] = (0.0, 0.0)  # Of the error, by the robot's position, 1/m.
+    offset: tuple[float, float] | None = None  # From the robot to the place, metres; None out of sight.
+
+
+@dataclass(frozen=True, slots=True)
 class WorldFacts(Message):
     """What the robot's sensors have established about the world (not the truth the world keeps to itself).
 
@@ -259,6 +269,14 @@ class LearnedCosts(Message):
     values: tuple[tuple[Atom, float], ...] = ()
     leg_scales: tuple[float, ...] = (1.0,) * 4
     updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedTargets(Message):
+    """Where legs to places really are to end, as (place, x, y), metres; places not named are where the map says."""
+
+    targets: tuple[tuple[str, float, float], ...] = ()
+    updates: int = 0  # In all.
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,13 +22,15 @@ from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import CRITERIA, validated_weights
 from mala_drake.randomness import keyed_generator
 from mala_drake.resources import models_folder
+from mala_drake.ward.displacement import displaced_ward
 from mala_drake.ward.items import all_items
 from mala_drake.ward.models import ward_models
-from mala_drake.ward.routes import BODY_RADIUS
+from mala_drake.ward.routes import BODY_RADIUS, GOAL_DISTANCE
 from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 HORIZON_KINDS = ("receding", "shrinking")
+TARGET_EVIDENCE = ("fuzzy", "geometric")
 
 
 @dataclass
@@ -42,6 +44,15 @@ class ObstacleConfig:
     half_length: float = 0.6  # Metres along its own x.
     half_width: float = 0.35  # Metres along its own y.
     height: float = 1.0  # Metres.
+
+
+@dataclass
+class DisplacedPlaceConfig:
+    """A place that is not where the map says; its furniture stands in front of it as ever."""
+
+    place: str = ""
+    dx: float = 0.0  # Metres.
+    dy: float = 0.0  # Metres.
 
 
 @dataclass
@@ -63,6 +74,7 @@ class WorldConfig:
     wrong_item_probability: float = 0.05  # That a dispenser hands over another item than asked for.
     wrong_items: list[str] = field(default_factory=list)  # Kinds handed over first, whatever is asked, for tests.
     obstacles: list[ObstacleConfig] = field(default_factory=list)  # Not on the map; only the sensor sees them.
+    displaced_places: list[DisplacedPlaceConfig] = field(default_factory=list)  # Unknown to planner and controller.
     risk_variation: float = 0.0  # v: an episode's congestion risk is U(1 - v, 1 + v) times the planner's.
 
 
@@ -119,6 +131,8 @@ class ControlConfig:
     step_budget: int = 400  # Control steps of one leg.
     waypoint_iterations: int = 50  # Control steps to the next waypoint.
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
+    learned_targets: bool = False  # Whether targets move to where the mismatch after their legs vanishes.
+    target_evidence: str = "fuzzy"  # By which: fuzzy (the missing membership), or geometric (also the place as seen).
 
     @property
     def solver_options(self) -> dict[str, Any]:
@@ -170,6 +184,10 @@ class Scenario:
     def load_ward(self) -> Ward:
         """The map of the ward."""
         return LoadWard(self.ward or None)
+
+    def true_ward(self, ward: Ward) -> Ward:
+        """The ward of this map as it really is."""
+        return displaced_ward(ward, {moved.place: (moved.dx, moved.dy) for moved in self.world.displaced_places})
 
     @property
     def unmapped_shapes(self) -> tuple[Shape, ...]:
@@ -226,6 +244,7 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
     for i, kind in enumerate(scenario.world.wrong_items):
         _one_of(f"{at}world.wrong_items[{i}]", kind, kinds)
     _check_obstacles(scenario, ward, at)
+    _check_displacements(scenario, ward, at)
 
 
 def _finite(value: Any, at: str) -> None:
@@ -252,6 +271,7 @@ def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
     _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
     _one_of(at + "control.horizon_kind", scenario.control.horizon_kind, HORIZON_KINDS)
+    _one_of(at + "control.target_evidence", scenario.control.target_evidence, TARGET_EVIDENCE)
 
 
 def _task_choices() -> tuple[str, ...]:
@@ -328,3 +348,27 @@ def _check_obstacles(scenario: Scenario, ward: Ward, at: str) -> None:
             raise BadInput(where, "a size that is not positive", "half_length, half_width and height above 0")
         if ShapeDistances([shape])([home.x, home.y])[0] < BODY_RADIUS:
             raise BadInput(where, f"stands on the robot at {home.name}", "an obstacle that leaves the robot free")
+
+
+def _check_displacements(scenario: Scenario, ward: Ward, at: str) -> None:
+    """The robot has to fit wherever a place is and wherever the map says it is, by the map and really."""
+    moved = scenario.world.displaced_places
+    known = [place.name for place in ward.places if place.category != "home"]
+    names = [config.place for config in moved]
+    for i, name in enumerate(names):
+        _one_of(f"{at}world.displaced_places[{i}].place", name, known)
+        if name in names[:i]:
+            raise BadInput(f"{at}world.displaced_places[{i}].place", f"{name!r} again", "each place once")
+    if not moved:
+        return
+    true_ward = scenario.true_ward(ward)
+    solid = (*ward.shapes, *true_ward.shapes, *scenario.unmapped_shapes)
+    distances = ShapeDistances(solid)
+    for place in (*true_ward.places, *(ward.place[name] for name in names)):
+        gaps = distances([place.x, place.y])
+        if max(abs(place.x), abs(place.y)) >= ward.half_extent or gaps.min() < GOAL_DISTANCE:
+            raise BadInput(
+                f"{at}world.displaced_places",
+                f"{place.name} at ({place.x:.2f}, {place.y:.2f}) is taken by {solid[int(gaps.argmin())].name}",
+                f"{GOAL_DISTANCE:.2f} m or more to anything solid, wherever a place is and wherever the map says it is",
+            )

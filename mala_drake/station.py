@@ -14,6 +14,7 @@ from pydrake.systems.primitives import Adder
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
+from mala_drake.control.sensitivities.target_sensitivity import TargetSensitivity
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
 from mala_drake.errors import BadInput
 from mala_drake.grounding.atom_memberships import location_membership, predicate_memberships
@@ -23,6 +24,8 @@ from mala_drake.learning.cost_estimator import CostEstimator
 from mala_drake.learning.cost_learner import CostLearner
 from mala_drake.learning.make_learner import make_learner
 from mala_drake.learning.preference_learner import PreferenceLearner
+from mala_drake.learning.target_estimator import TargetEstimator
+from mala_drake.learning.target_learner import TargetLearner
 from mala_drake.patient.patient import Patient
 from mala_drake.planning.task_planner import TaskPlanner
 from mala_drake.robot.arm import Arm
@@ -151,11 +154,12 @@ class _StationBuilder:
         self, scenario: Scenario, ward: Ward, meshcat: Meshcat | None, names: Sequence[str], tasks: frozenset[str]
     ) -> None:
         self._scenario = scenario
-        self._ward = ward
+        self._ward = ward  # As the robot's map has it.
+        self._true_ward = scenario.true_ward(ward)
         self._meshcat = meshcat
         self._congestion = Congestion(ward)
         self._names = names
-        self._kept = all_items(ward, tasks)
+        self._kept = all_items(self._true_ward, tasks)
         self._builder = DiagramBuilder()
         self._plant: MultibodyPlant
         self._robot: CareRobot
@@ -167,7 +171,7 @@ class _StationBuilder:
     def add_physics(self) -> None:
         """Ward, robot, boxes and what stands about, in one discrete plant with contact."""
         self._plant, self._scene_graph = MakeCarePlant(self._builder)
-        AddWard(self._plant, self._ward, visible=self._meshcat is not None)
+        AddWard(self._plant, self._true_ward, visible=self._meshcat is not None)
         self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
         self._items = AddItems(self._plant, self._scene_graph, self._kept, self._robot)
         for config in self._scenario.world.obstacles:
@@ -193,13 +197,13 @@ class _StationBuilder:
         self._item_positions = self._add("item_positions", ItemPositions(self._plant, self._items))
         unmapped = self._scenario.unmapped_shapes
         self._obstacle_sensor = self._add(
-            "obstacle_sensor", ObstacleSensor(mapped=self._ward.shapes, unmapped=unmapped)
+            "obstacle_sensor", ObstacleSensor(mapped=self._true_ward.shapes, unmapped=unmapped)
         )
         self._safety_monitor = self._add(
             "safety_monitor",
             SafetyMonitor(
                 self._robot,
-                (*self._ward.shapes, *unmapped),
+                (*self._true_ward.shapes, *unmapped),
                 ignored=[body.index() for body in self._items.bodies],
             ),
         )
@@ -221,7 +225,7 @@ class _StationBuilder:
         self._grounding = self._add(
             "fuzzy_grounding",
             FuzzyGrounding(
-                locations={name: (x, y) for name, (x, y, _) in places.items()},
+                locations={place.name: (place.x, place.y) for place in self._true_ward.places},
                 location_membership=location_membership(scenario.grounding.membership),
                 predicate_memberships=predicate_memberships(scenario.grounding.membership),
             ),
@@ -235,22 +239,23 @@ class _StationBuilder:
         problem = OptimalControlProblem(horizon=control.horizon)
         shrinking = control.horizon_kind == "shrinking"
         make_solver = SolverByHorizon if shrinking else MakeSolver
+        self._guide = LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules)
         self._controller = self._add(
             "mpc_controller",
             MpcController(
                 targets=places,
-                guide=LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules),
+                guide=self._guide,
                 congestion=self._congestion,
                 problem=problem,
                 solver=make_solver(control.solver, problem, **control.solver_options),
                 shortest_horizon=SHORTEST_HORIZON if shrinking else None,
             ),
         )
-        self._executor = self._add("in_place_executor", InPlaceExecutor(ward, items=self._kept))
+        self._executor = self._add("in_place_executor", InPlaceExecutor(self._true_ward, items=self._kept))
         self._world = self._add(
             "world",
             World(
-                ward,
+                self._true_ward,
                 items=self._kept,
                 wrong_item_probability=scenario.world.wrong_item_probability,
                 wrong_items=scenario.world.wrong_items,
@@ -263,7 +268,7 @@ class _StationBuilder:
         )
 
     def add_learning(self) -> None:
-        """The patient, who learns from the ratings, and who learns what actions cost."""
+        """The patient, who learns from the ratings, and who learns what actions cost and where places really are."""
         scenario = self._scenario
         self._patient = self._add(
             "patient",
@@ -285,12 +290,30 @@ class _StationBuilder:
         if scenario.planner.learned_costs:
             estimator = CostEstimator(self._task_planner.predictions)
             self._cost_learner = self._add("cost_learner", CostLearner(learner=estimator))
+        self._target_learner = self._add_target_learner() if scenario.control.learned_targets else None
+
+    def _add_target_learner(self) -> TargetLearner:
+        """The learner with a solver of its own, since legs are simulated while the controller drives."""
+        control, ward = self._scenario.control, self._ward
+        problem = OptimalControlProblem(horizon=control.horizon)
+        solver = MakeSolver(control.solver, problem, **control.solver_options)
+        learner = TargetLearner(
+            learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
+            yaws={place.name: place.yaw for place in ward.places},
+            sensitivity=TargetSensitivity(problem, solver, self._guide, self._congestion),
+            mapped=ward.shapes,
+            geometric=control.target_evidence == "geometric",
+        )
+        added: TargetLearner = self._add("target_learner", learner)
+        return added
 
     def connect(self) -> None:
         """Wires everything, source by source."""
         plant, robot = self._plant, self._robot
         base_state = plant.get_state_output_port(robot.robot)
         arm_state = plant.get_state_output_port(robot.arm)
+        # Who is there only if the scenario wants it.
+        targets = [self._target_learner] if self._target_learner is not None else []
         # What each layer tells the others.
         self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter)
         self._wire(
@@ -301,22 +324,26 @@ class _StationBuilder:
             self._world,
             self._grounding,
             self._feature_meter,
+            *targets,
         )
         self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter)
-        self._wire(self._controller, "leg_report", self._task_planner)
+        self._wire(self._controller, "leg_report", self._task_planner, *targets)
         self._wire(self._controller, "control", self._drivetrain)
         self._wire(self._executor, "in_place_report", self._task_planner, self._world)
-        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller)
+        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller, *targets)
         self._wire(self._executor, "arm_target", self._arm)
         self._wire(self._executor, "charge_rates", self._battery)
         self._wire(self._world, "world_facts", self._grounding)
         self._wire(self._world, "handed_item", self._executor)
         self._wire(self._world, "clamped", self._magnet)
         self._wire(self._grounding, "symbolic_state", self._task_planner)
-        self._wire(self._obstacle_sensor, "obstacles", self._controller)
+        self._wire(self._grounding, "place_mismatch", *targets)
+        self._wire(self._obstacle_sensor, "obstacles", self._controller, *targets)
         self._wire(self._feature_meter, "episode_report", self._patient)
         self._wire(self._patient, "ratings", self._learner)
-        self._wire(self._learner, "preferences", self._task_planner, self._controller)
+        self._wire(self._learner, "preferences", self._task_planner, self._controller, *targets)
+        for target_learner in targets:
+            self._wire(target_learner, "learned_targets", self._controller)
         # What everybody senses.
         for name, port in (("plant_state", base_state), ("arm_state", arm_state)):
             self._fan_out(name, port)

@@ -85,6 +85,14 @@ def test_initial_weights_may_be_drawn_by_the_seed(tmp_path):
     assert untouched.settled_learner == untouched.learner
 
 
+def test_displaced_places_are_elsewhere_than_on_the_map(tmp_path):
+    scenario = load(tmp_path, "world: {displaced_places: [{place: pantry, dx: -0.78, dy: -1.84}]}")
+    ward = scenario.load_ward()
+    mapped, true = ward.place["pantry"], scenario.true_ward(ward).place["pantry"]
+    assert (true.x - mapped.x, true.y - mapped.y) == pytest.approx((-0.78, -1.84))
+    assert mut.Scenario().true_ward(ward) is ward
+
+
 def test_obstacles_are_shapes_seen_from_above(tmp_path):
     text = "world: {obstacles: [{name: cart, x: 3, y: 4, yaw: 0.5, half_length: 0.7, half_width: 0.2}]}"
     (shape,) = load(tmp_path, text).unmapped_shapes
@@ -154,6 +162,27 @@ def test_no_number_may_be_negative(prefix, name):
         ("world: {obstacles: [{x: 0.3, y: 0.1}]}", ["world.obstacles[0]", "robot at home"]),
         ("world: {obstacles: [{x: 5, height: 0}]}", ["world.obstacles[0]", "above 0"]),
         ("world: {obstacles: [{x: 5}, {x: 9}]}", ["world.obstacles[1].name: 'trolley'", "no other obstacle"]),
+        ("world: {displaced_places: [{place: attic, dx: 2}]}", ["world.displaced_places[0].place: 'attic'", "pantry"]),
+        ("world: {displaced_places: [{place: home, dx: 2}]}", ["world.displaced_places[0].place: 'home'"]),
+        (
+            "world: {displaced_places: [{place: pantry, dy: 2}, {place: pantry, dy: -2}]}",
+            ["world.displaced_places[1].place: 'pantry' again", "each place once"],
+        ),
+        ("world: {displaced_places: [{place: pantry, dx: .nan}]}", ["displaced_places[0].dx: nan", "finite"]),
+        (  # The shelf would stand where the map says that the robot is to stand.
+            "world: {displaced_places: [{place: pantry, dx: -1.5}]}",
+            ["world.displaced_places: pantry at (-3.00, 15.00)", "taken by pantry_shelf"],
+        ),
+        (  # Where the map says that the shelf is, the robot does not go.
+            "world: {displaced_places: [{place: pantry, dx: 1.5}]}",
+            ["world.displaced_places: pantry at (-1.50, 15.00)", "taken by pantry_shelf"],
+        ),
+        (  # The cabinet would stand where the robot stands at another place.
+            "world: {displaced_places: [{place: pharmacy_north, dx: -2, dy: 1.7}]}",
+            ["world.displaced_places: quality_check", "taken by pharmacy_north_cabinet"],
+        ),
+        ("world: {displaced_places: [{place: supply_A, dx: 40}]}", ["world.displaced_places: supply_A at (54.00"]),
+        ("control: {target_evidence: hearsay}", ["control.target_evidence: 'hearsay'", "fuzzy, geometric"]),
         ("ward: nowhere.ward.yaml", ["ward", "nowhere.ward.yaml", "path of a ward map"]),
         ("robto: {}", ["robto: unknown key", "robot"]),
     ],

@@ -12,8 +12,9 @@ from mala_drake import station as mut
 from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.errors import BadInput
 from mala_drake.learning import Posterior
+from mala_drake.robot.plant import X_WB_at
 from mala_drake.robot.plant_state import V_X, X, Y, yaw_of
-from mala_drake.scenario import ObstacleConfig, Scenario
+from mala_drake.scenario import DisplacedPlaceConfig, ObstacleConfig, Scenario
 
 OURS = [
     "scheduler",
@@ -57,13 +58,52 @@ def test_every_system_has_the_ports_it_draws(station, name, assert_port_box):
     assert_port_box(station.GetSubsystemByName(name))
 
 
-def test_every_input_of_our_systems_is_connected(station):
+def open_inputs(station, names):
     connected = {(target[0].get_name(), target[1]) for target in station.connection_map()}
-    for name in OURS:
-        system = station.GetSubsystemByName(name)
-        for i in range(system.num_input_ports()):
-            port = system.get_input_port(i)
-            assert (name, port.get_index()) in connected, f"{name}.{port.get_name()}"
+    systems = [station.GetSubsystemByName(name) for name in names]
+    ports = [system.get_input_port(i) for system in systems for i in range(system.num_input_ports())]
+    return [
+        (port.get_system().get_name(), port.get_name())
+        for port in ports
+        if (port.get_system().get_name(), port.get_index()) not in connected
+    ]
+
+
+def test_every_input_of_our_systems_is_connected_but_that_of_targets_nobody_learns(station):
+    assert open_inputs(station, OURS) == [("mpc_controller", "learned_targets")]
+
+
+def displaced(**control):
+    scenario = Scenario(task="meal")
+    scenario.world.displaced_places = [DisplacedPlaceConfig("pantry", -0.78, -1.84)]
+    for name, value in control.items():
+        setattr(scenario.control, name, value)
+    return scenario
+
+
+def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
+    station = mut.MakeCareStation(displaced(learned_targets=True))
+    assert open_inputs(station, [*OURS, "target_learner"]) == []
+    assert_port_box(station.GetSubsystemByName("target_learner"))
+    assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
+
+
+def test_a_displaced_place_is_elsewhere_than_the_robot_believes():
+    station = mut.MakeCareStation(displaced())
+    inspector = station.GetSubsystemByName("scene_graph").model_inspector()
+    plant = station.GetSubsystemByName("plant")
+    shelf = [g for g in inspector.GetAllGeometryIds() if "pantry_shelf/" in inspector.GetName(g)]
+    assert shelf
+    centre = np.mean([inspector.GetPoseInFrame(geometry).translation()[:2] for geometry in shelf], axis=0)
+    assert centre == pytest.approx([-1.7 - 0.78, 15.0 - 1.84], abs=0.5)
+    # At home the robot is far from both; it begins where the map says that the pantry is, then where it is.
+    for x, y, expected in ((0.0, 0.0, 0.0), (-3.0, 15.0, (5.0 - 2.0) / 4.0), (-3.78, 13.16, 1.0)):
+        context = station.CreateDefaultContext()
+        base = plant.get_body(min(plant.GetFloatingBaseBodies(), key=int))
+        plant.SetFloatingBaseBodyPoseInWorldFrame(plant.GetMyMutableContextFromRoot(context), base, X_WB_at(x, y, 0.0))
+        Simulator(station, context).AdvanceTo(PLANT_STEP)
+        memberships = read(station, context, "fuzzy_grounding", "memberships")
+        assert memberships.value(("at", "robot1", "pantry")) == pytest.approx(expected, abs=0.01)
 
 
 def test_the_layers_are_those_of_the_design(station):

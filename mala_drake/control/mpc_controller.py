@@ -17,6 +17,7 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    LearnedTargets,
     MagnetCommand,
     Message,
     Obstacles,
@@ -67,12 +68,14 @@ class MpcController(LeafSystem):
         - preferences
         - charge
         - magnet
+        - learned_targets
         output_ports:
         - control
         - leg_report
         - predicted_trajectory
 
     A new action (a higher sequence number) replaces the one under way; one that is not a movement parks the robot.
+    A leg ends where `learned_targets` says at its beginning, if that is connected and says so, else where the map does.
     Whatever goes wrong - no free way, failed solves, a state that is not finite, an empty battery - the robot brakes
     and the report says what happened.
 
@@ -115,6 +118,7 @@ class MpcController(LeafSystem):
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
         self._charge = self.DeclareVectorInputPort("charge", 1)
         self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
+        self._learned_targets = self.DeclareAbstractInputPort("learned_targets", Value(LearnedTargets()))
         self._driving = self.DeclareAbstractState(Value(_Driving()))
         from_state = {self.abstract_state_ticket(self._driving)}
         self.DeclareVectorOutputPort("control", CONTROL_SIZE, self._calc_control, prerequisites_of_calc=from_state)
@@ -168,7 +172,7 @@ class MpcController(LeafSystem):
             return self._finish(driving, robot_state, Outcome.BATTERY_EMPTY, "no charge left")
         seen = self._obstacles.Eval(context).shapes
         if driving.leg is None:
-            target = self._targets.get(driving.action.place)
+            target = self._target(context, driving.action.place)
             if target is None:
                 return self._finish(driving, robot_state, Outcome.BLOCKED, f"no place {driving.action.place!r}")
             driving = replace(driving, leg=self._guide.begin(target, robot_state, seen))
@@ -180,6 +184,14 @@ class MpcController(LeafSystem):
         if leg.outcome is not Outcome.RUNNING or leg.track is None:
             return self._finish(driving, robot_state, leg.outcome, leg.detail)
         return self._solve(context, driving, leg, robot_state)
+
+    def _target(self, context: Context, place: str) -> Pose | None:
+        """Where the robot is to stop for a place: p^w of the action that leads there."""
+        pose = self._targets.get(place)
+        if pose is None or not self._learned_targets.HasValue(context):
+            return pose
+        learned: LearnedTargets = self._learned_targets.Eval(context)
+        return next(((x, y, pose[2]) for name, x, y in learned.targets if name == place), pose)
 
     def _solve(self, context: Context, driving: _Driving, leg: Leg, robot_state: NDArray[np.float64]) -> _Driving:
         assert leg.track is not None
@@ -244,7 +256,7 @@ class MpcController(LeafSystem):
         return replace(driving, report=report)
 
     def _finish(self, driving: _Driving, robot_state: NDArray[np.float64], outcome: Outcome, detail: str) -> _Driving:
-        target = self._targets.get(driving.action.place)
+        target = driving.leg.target if driving.leg else self._targets.get(driving.action.place)
         position_error, yaw_error = pose_errors(robot_state, target) if target else (0.0, 0.0)
         report = replace(
             driving.report,

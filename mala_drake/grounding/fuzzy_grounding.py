@@ -13,12 +13,16 @@ from mala_drake.grounding.atom_memberships import predicate_memberships as fuzzy
 from mala_drake.grounding.defuzzification import INSTANTIATION_THRESHOLD
 from mala_drake.grounding.location_grounding import IN_TRANSIT, LocationGrounding
 from mala_drake.grounding.membership import AbstractMembership
+from mala_drake.grounding.mismatch import location_error, location_error_gradient
 from mala_drake.grounding.predicates import (
     AbstractPredicateMembership,
     Observation,
     world_fact_truths,
 )
-from mala_drake.messages import Action, Atom, Memberships, RobotState, SymbolicState, WorldFacts
+from mala_drake.messages import Action, Atom, Memberships, PlaceMismatch, RobotState, SymbolicState, WorldFacts
+
+SIGHT = 6.0
+"""Metres within which the robot sees the mark of a place."""
 
 _AT = "at"
 
@@ -37,14 +41,18 @@ class FuzzyGrounding(LeafSystem):
         output_ports:
         - memberships
         - symbolic_state
+        - place_mismatch
 
-    It has no state: both outputs are functions of the inputs. `robot_state` is (x, y, yaw, v_x, v_y, omega_z), `charge`
+    It has no state: all outputs are functions of the inputs. `robot_state` is (x, y, yaw, v_x, v_y, omega_z), `charge`
     the state of charge.
 
     `(at ROBOT l)` holds only for the place with the highest membership, and only from the threshold up; in transit
     none does. Every other predicate has one membership function: one of `predicate_memberships`, else 1 for what
     `world_facts` lists; its atoms hold from the threshold up. `at` atoms of the robot itself among the world facts
     are ignored, since the robot's place is grounded in its position.
+
+    `place_mismatch` is about the place of `action`: the continuous mismatch with its derivative, and where the place is
+    as the robot sees it, within `SIGHT`.
 
     A robot state that is not finite is an ordinary event: no place is known then. A charge that is not finite counts
     as empty, the safe side.
@@ -90,6 +98,9 @@ class FuzzyGrounding(LeafSystem):
         self.DeclareAbstractOutputPort(
             "symbolic_state", lambda: Value(SymbolicState()), self._calc_symbolic_state, prerequisites_of_calc=inputs
         )
+        self.DeclareAbstractOutputPort(
+            "place_mismatch", lambda: Value(PlaceMismatch()), self._calc_place_mismatch, prerequisites_of_calc=inputs
+        )
 
     def _observe(self, context: Context) -> Observation:
         estimate = self._robot_state.Eval(context).tolist()
@@ -128,3 +139,16 @@ class FuzzyGrounding(LeafSystem):
         if place != IN_TRANSIT:
             atoms.append((_AT, self._robot, place))
         output.set_value(SymbolicState(tuple(sorted(atoms)), place, observation.charge))
+
+    def _calc_place_mismatch(self, context: Context, output: Value) -> None:
+        observation = self._observe(context)
+        place, robot_state = observation.action.place, observation.robot_state
+        if robot_state is None or place not in self._grounding.places:
+            output.set_value(PlaceMismatch())
+            return
+        position, location = (robot_state.x, robot_state.y), self._grounding.location(place)
+        x, y = location_error_gradient(location, position).tolist()
+        offset = location.centre[0] - position[0], location.centre[1] - position[1]
+        seen = math.hypot(*offset) <= SIGHT
+        error = float(location_error(location, position))
+        output.set_value(PlaceMismatch(place, error, (x, y), offset if seen else None))

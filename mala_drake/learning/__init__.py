@@ -13,6 +13,8 @@ from mala_drake.learning.preference_learner import PreferenceLearner
 from mala_drake.learning.projected_gradient import ProjectedGradient
 from mala_drake.learning.random_weights import RandomWeights
 from mala_drake.learning.simplex import project_onto_simplex
+from mala_drake.learning.target_estimator import TargetEstimator, TargetEvidence
+from mala_drake.learning.target_learner import TargetLearner
 
 __all__ = [
     "CONVERGED_DISTANCE",
@@ -26,6 +28,9 @@ __all__ = [
     "PreferenceLearner",
     "ProjectedGradient",
     "RandomWeights",
+    "TargetEstimator",
+    "TargetEvidence",
+    "TargetLearner",
     "convergence_episode",
     "efficiency",
     "make_learner",

@@ -18,6 +18,7 @@ from mala_drake.control.solver import MakeSolver
 from mala_drake.messages import (
     Action,
     ActionKind,
+    LearnedTargets,
     MagnetCommand,
     Obstacles,
     Outcome,
@@ -234,3 +235,35 @@ def test_carrying_something_it_accelerates_less(problem):
         states = np.array(bench.output("predicted_trajectory").states)
         controls.append(states)
     assert not np.allclose(controls[0], controls[1])
+
+
+@pytest.mark.parametrize("learned", [None, LearnedTargets(), LearnedTargets((("elsewhere", 1.0, 1.0),), 1)])
+def test_where_nothing_is_learned_the_map_says_where_a_leg_ends(bench, learned):
+    if learned is not None:
+        bench.system.GetInputPort("learned_targets").FixValue(bench.context, Value(learned))
+    bench.send(GO)
+    bench.place([THERE[0], THERE[1] + 0.03, 0.0, 0.0, 0.0, 0.0])
+    bench.tick(2)
+    assert bench.output("leg_report").position_error == pytest.approx(0.03)
+
+
+def test_a_leg_ends_at_its_learned_target_and_is_judged_by_it(bench):
+    learned = LearnedTargets((("there", 4.0, 2.0),), 1)
+    bench.system.GetInputPort("learned_targets").FixValue(bench.context, Value(learned))
+    bench.send(GO)
+    bench.place([4.0, 1.96, 0.0, 0.0, 0.0, 0.0])
+    bench.tick(2)
+    report = bench.output("leg_report")
+    assert report.outcome is Outcome.SUCCESS
+    assert report.position_error == pytest.approx(0.04)
+
+
+def test_a_target_learned_under_way_is_for_the_next_leg(bench):
+    port = bench.system.GetInputPort("learned_targets").FixValue(bench.context, Value(LearnedTargets()))
+    bench.send(GO)
+    bench.tick()
+    port.GetMutableData().set_value(LearnedTargets((("there", 4.0, 2.0),), 1))
+    bench.place([THERE[0], THERE[1] + 0.03, 0.0, 0.0, 0.0, 0.0])
+    bench.tick(2)
+    report = bench.output("leg_report")
+    assert (report.outcome, report.position_error) == (Outcome.SUCCESS, pytest.approx(0.03))

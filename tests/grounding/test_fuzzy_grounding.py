@@ -7,7 +7,8 @@ from pydrake.systems.primitives import ConstantVectorSource
 
 import mala_drake.grounding as mut
 from mala_drake.errors import BadInput
-from mala_drake.messages import Action, ActionKind, Memberships, SymbolicState, WorldFacts
+from mala_drake.grounding.fuzzy_grounding import SIGHT
+from mala_drake.messages import Action, ActionKind, Memberships, PlaceMismatch, SymbolicState, WorldFacts
 
 LOCATIONS = {"pharmacy_north": (5.0, 18.0), "home": (0.0, 0.0), "pantry": (-3.0, 15.0)}
 HAS_MEDICATION = ("has-medication", "robot1")
@@ -34,6 +35,10 @@ class Probe:
     @property
     def memberships(self) -> Memberships:
         return self.system.GetOutputPort("memberships").Eval(self.context)
+
+    @property
+    def place_mismatch(self) -> PlaceMismatch:
+        return self.system.GetOutputPort("place_mismatch").Eval(self.context)
 
     @property
     def symbolic_state(self) -> SymbolicState:
@@ -175,3 +180,39 @@ def test_a_diagram_evaluates_it_from_wired_ports():
     diagram.GetInputPort("world_facts").FixValue(context, Value(WorldFacts()))
     diagram.GetInputPort("action").FixValue(context, Value(Action()))
     assert diagram.GetOutputPort("symbolic_state").Eval(context).place == "pantry"
+
+
+TO_PANTRY = Action(1, ActionKind.MOVE, "go_to_pantry", ("robot1",), "pantry")
+
+
+def test_what_is_missing_at_the_expected_place_is_told_with_its_derivative(dut):
+    x, y = LOCATIONS["pantry"]
+    dut.fix(action=Value(TO_PANTRY), robot_state=[x + 1.5, y - 2.0, 0.3, 0.0, 0.0, 0.0])
+    mismatch = dut.place_mismatch
+    assert (mismatch.place, mismatch.offset) == ("pantry", (-1.5, 2.0))
+    assert mismatch.error == pytest.approx((2.5 - 1.0) / 4.0)
+    for i, gradient in enumerate(mismatch.gradient):
+        errors = []
+        for sign in (1.0, -1.0):
+            state = [x + 1.5, y - 2.0, 0.3, 0.0, 0.0, 0.0]
+            state[i] += sign * 1e-6
+            errors.append(dut.fix(robot_state=state).place_mismatch.error)
+        assert gradient == pytest.approx((errors[0] - errors[1]) / 2e-6, abs=1e-8)
+
+
+def test_on_the_plateau_nothing_is_missing(dut):
+    x, y = LOCATIONS["pantry"]
+    dut.fix(action=Value(TO_PANTRY), robot_state=[x, y + 0.9, 0.0, 0.0, 0.0, 0.0])
+    assert dut.place_mismatch == PlaceMismatch("pantry", 0.0, (0.0, 0.0), (0.0, pytest.approx(-0.9)))
+
+
+def test_a_place_out_of_sight_is_not_seen(dut):
+    x, y = LOCATIONS["pantry"]
+    dut.fix(action=Value(TO_PANTRY), robot_state=[x + SIGHT + 0.1, y, 0.0, 0.0, 0.0, 0.0])
+    assert dut.place_mismatch == PlaceMismatch("pantry", 1.0, (0.0, 0.0), None)
+
+
+def test_without_an_expected_place_or_a_position_there_is_no_mismatch(dut):
+    assert dut.place_mismatch == PlaceMismatch()
+    dut.fix(action=Value(TO_PANTRY), robot_state=[math.nan] + [0.0] * 5)
+    assert dut.place_mismatch == PlaceMismatch()
