@@ -280,6 +280,18 @@ class LearnedTargets(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class LearnedDynamics(Message):
+    """The coefficients p^f of the controller's model as learned, and their standard deviations; empty if nothing is.
+
+    Both are in the order of `DynamicsParameters`. `updates` counts the samples learned from.
+    """
+
+    coefficients: tuple[float, ...] = ()
+    deviations: tuple[float, ...] = ()
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class EpisodeReport(Message):
     """One task as it was executed, for the patient, the learners and the record. `sequence` is the task's."""
 

@@ -133,6 +133,7 @@ class ControlConfig:
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
     learned_targets: bool = False  # Whether targets move to where the mismatch after their legs vanishes.
     target_evidence: str = "fuzzy"  # By which: fuzzy (the missing membership), or geometric (also the place as seen).
+    learned_dynamics: bool = False  # Whether the controller's model is corrected by how the robot really drives.
 
     @property
     def solver_options(self) -> dict[str, Any]:

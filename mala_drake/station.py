@@ -22,6 +22,8 @@ from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
 from mala_drake.learning.abstract_learner import FloatArray
 from mala_drake.learning.cost_estimator import CostEstimator
 from mala_drake.learning.cost_learner import CostLearner
+from mala_drake.learning.dynamics_estimator import DynamicsEstimator
+from mala_drake.learning.dynamics_learner import DynamicsLearner
 from mala_drake.learning.make_learner import make_learner
 from mala_drake.learning.preference_learner import PreferenceLearner
 from mala_drake.learning.target_estimator import TargetEstimator
@@ -268,7 +270,7 @@ class _StationBuilder:
         )
 
     def add_learning(self) -> None:
-        """The patient, who learns from the ratings, and who learns what actions cost and where places really are."""
+        """The patient, and who learns: from ratings, what actions cost, where places are, how the robot answers."""
         scenario = self._scenario
         self._patient = self._add(
             "patient",
@@ -291,6 +293,10 @@ class _StationBuilder:
             estimator = CostEstimator(self._task_planner.predictions)
             self._cost_learner = self._add("cost_learner", CostLearner(learner=estimator))
         self._target_learner = self._add_target_learner() if scenario.control.learned_targets else None
+        self._dynamics_learner = None
+        if scenario.control.learned_dynamics:
+            dynamics = DynamicsEstimator(pose_noise=max(scenario.robot.position_noise, scenario.robot.yaw_noise))
+            self._dynamics_learner = self._add("dynamics_learner", DynamicsLearner(learner=dynamics))
 
     def _add_target_learner(self) -> TargetLearner:
         """The learner with a solver of its own, since legs are simulated while the controller drives."""
@@ -328,7 +334,6 @@ class _StationBuilder:
         )
         self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter)
         self._wire(self._controller, "leg_report", self._task_planner, *targets)
-        self._wire(self._controller, "control", self._drivetrain)
         self._wire(self._executor, "in_place_report", self._task_planner, self._world)
         self._wire(self._executor, "magnet", self._magnet, self._world, self._controller, *targets)
         self._wire(self._executor, "arm_target", self._arm)
@@ -350,7 +355,10 @@ class _StationBuilder:
         if self._cost_learner is not None:
             self._wire(self._feature_meter, "action_features", self._cost_learner)
             self._wire(self._cost_learner, "learned_costs", self._task_planner)
+        if self._dynamics_learner is not None:
+            self._wire(self._dynamics_learner, "learned_dynamics", self._controller)
         self._fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
+        self._fan_out("control", self._controller.GetOutputPort("control"))
         self._fan_out("charge", self._battery.GetOutputPort("charge"))
         self._fan_out("item_positions", self._item_positions.GetOutputPort("item_positions"))
         # The robot's body.

@@ -17,6 +17,7 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    LearnedDynamics,
     LearnedTargets,
     MagnetCommand,
     Message,
@@ -31,7 +32,7 @@ from .action_parameters import DrivingStyle, make_parameters, style_of
 from .leg import Leg, LegGuide, Pose, pose_errors
 from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
-from .parameters import StageParameters
+from .parameters import DynamicsParameters, StageParameters
 from .reference import make_reference
 from .solution import Solution, Status
 from .solver import Solver
@@ -69,6 +70,7 @@ class MpcController(LeafSystem):
         - charge
         - magnet
         - learned_targets
+        - learned_dynamics
         output_ports:
         - control
         - leg_report
@@ -78,6 +80,9 @@ class MpcController(LeafSystem):
     A leg ends where `learned_targets` says at its beginning, if that is connected and says so, else where the map does.
     Whatever goes wrong - no free way, failed solves, a state that is not finite, an empty battery - the robot brakes
     and the report says what happened.
+
+    The model it predicts with, p^f, is what `learned_dynamics` says; where that says nothing or is not connected, it is
+    the nominal one.
 
     The wall time of each solve is appended to `solve_seconds`, a plain list: it depends on the machine, so it is no
     part of the diagram's state, and nothing in the diagram reads it.
@@ -119,6 +124,7 @@ class MpcController(LeafSystem):
         self._charge = self.DeclareVectorInputPort("charge", 1)
         self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._learned_targets = self.DeclareAbstractInputPort("learned_targets", Value(LearnedTargets()))
+        self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
         self._driving = self.DeclareAbstractState(Value(_Driving()))
         from_state = {self.abstract_state_ticket(self._driving)}
         self.DeclareVectorOutputPort("control", CONTROL_SIZE, self._calc_control, prerequisites_of_calc=from_state)
@@ -211,6 +217,7 @@ class MpcController(LeafSystem):
             reference=reference,
             obstacles=self._obstacles.Eval(context).shapes,
             congestion=self._congestion,
+            dynamics=self._dynamics(context),
         )
         started = time.perf_counter()
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)
@@ -234,6 +241,13 @@ class MpcController(LeafSystem):
             report=replace(report, closed_loop_cost=report.closed_loop_cost + stage_cost),
             bad_solves=0,
         )
+
+    def _dynamics(self, context: Context) -> DynamicsParameters | None:
+        """p^f as learned, or None for the nominal one."""
+        if not self._learned_dynamics.HasValue(context):
+            return None
+        learned: LearnedDynamics = self._learned_dynamics.Eval(context)
+        return DynamicsParameters(*learned.coefficients) if learned.updates else None
 
     def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
         """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""

@@ -26,8 +26,9 @@ _NOT_WRITTEN = ("leg_outcomes",)  # For who watches a run; in the file, `failure
 class EpisodeRecord:
     """One episode as it was executed on the physics; the fields are those of the file, in their order.
 
-    Clearance and collisions are taken at the plant step; `terminal_errors_m` and the like have one entry a leg. Only
-    `timing` depends on the machine.
+    `learned_dynamics` has each learned coefficient of the controller's model with its standard deviation, at the end of
+    the episode; it is not written where none are learned. Clearance and collisions are taken at the plant step;
+    `terminal_errors_m` and the like have one entry a leg. Only `timing` depends on the machine.
     """
 
     episode: int
@@ -60,11 +61,14 @@ class EpisodeRecord:
     mismatches: int
     battery_start: float
     battery_end: float
+    learned_dynamics: dict[str, list[float]] | None = None
     timing: dict[str, float] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """The record as one line of JSON; numbers that are not finite become null."""
         written = {name: value for name, value in vars(self).items() if name not in _NOT_WRITTEN}
+        if self.learned_dynamics is None:
+            del written["learned_dynamics"]
         return json.dumps(plain(written), ensure_ascii=False)
 
     @property

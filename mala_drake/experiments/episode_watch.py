@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Any
 
 from pydrake.systems.framework import Context, Diagram
 
+from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, plan_variant, timing
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.messages import (
@@ -13,6 +15,7 @@ from mala_drake.messages import (
     ActionKind,
     ActionReport,
     EpisodeReport,
+    LearnedDynamics,
     Outcome,
     Preferences,
     Ratings,
@@ -114,6 +117,7 @@ class EpisodeWatch:
             mismatches=report.mismatches,
             battery_start=self._charge_before,
             battery_end=self._charge(),
+            learned_dynamics=self._learned_dynamics(),
             timing=timing(
                 wall_seconds=wall_seconds,
                 cpu_seconds=cpu_seconds,
@@ -137,6 +141,15 @@ class EpisodeWatch:
             replans=unfinished.replans,
             mismatches=unfinished.mismatches,
         )
+
+    def _learned_dynamics(self) -> dict[str, list[float]] | None:
+        """Estimate and standard deviation by coefficient, if the station has a learner of them."""
+        if not self._station.HasSubsystemNamed("dynamics_learner"):
+            return None
+        learned: LearnedDynamics = self._read("dynamics_learner", "learned_dynamics")
+        names = [item.name for item in fields(DynamicsParameters)]
+        pairs = zip(learned.coefficients, learned.deviations, strict=True)
+        return {name: list(pair) for name, pair in zip(names, pairs, strict=False)}
 
     def _leg_under_way(self) -> list[ActionReport]:
         """The leg that the end of the episode's time cuts short, if there is one."""

@@ -5,6 +5,8 @@ from mala_drake.learning.bandit import Bandit
 from mala_drake.learning.convergence import CONVERGED_DISTANCE, convergence_episode, preference_distance
 from mala_drake.learning.cost_estimator import CostEstimator
 from mala_drake.learning.cost_learner import CostLearner
+from mala_drake.learning.dynamics_estimator import DynamicsEstimator, Transition
+from mala_drake.learning.dynamics_learner import DynamicsLearner
 from mala_drake.learning.fixed_weights import FixedWeights
 from mala_drake.learning.information_bound import efficiency, weight_bound
 from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
@@ -23,6 +25,8 @@ __all__ = [
     "Bandit",
     "CostEstimator",
     "CostLearner",
+    "DynamicsEstimator",
+    "DynamicsLearner",
     "FixedWeights",
     "Posterior",
     "PreferenceLearner",
@@ -31,6 +35,7 @@ __all__ = [
     "TargetEstimator",
     "TargetEvidence",
     "TargetLearner",
+    "Transition",
     "convergence_episode",
     "efficiency",
     "make_learner",
