@@ -80,7 +80,7 @@ class DynamicsEstimator(AbstractLearner):
         least_speed: float = 0.3,
         least_excitation: float = 0.003,
         bound: float = 2.5,
-        memory: float = 300.0,
+        memory: float = 150.0,
         noise_memory: float = 100.0,
     ) -> None:
         """Constructs the estimator.
@@ -93,7 +93,7 @@ class DynamicsEstimator(AbstractLearner):
             least_excitation: velocity change that coefficients off by `NOMINAL_DEVIATIONS` must at least make for a
                 sample to be learned from, m/s and rad/s.
             bound: standard deviations at which the influence of an innovation ends.
-            memory: samples after which a coefficient is half forgotten, roughly, if excited; > 1.
+            memory: samples of one direction of excitation after which what it told is forgotten; > 1.
             noise_memory: the same of the noise; > 1.
 
         Raises:
