@@ -11,7 +11,7 @@ from pydrake.systems.framework import PortDataType
 from mala_drake import station as mut
 from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.errors import BadInput
-from mala_drake.learning import Posterior
+from mala_drake.learning import DynamicsEstimator, Posterior
 from mala_drake.robot.plant import X_WB_at
 from mala_drake.robot.plant_state import V_X, X, Y, yaw_of
 from mala_drake.scenario import DisplacedPlaceConfig, ObstacleConfig, Scenario
@@ -69,8 +69,8 @@ def open_inputs(station, names):
     ]
 
 
-def test_every_input_of_our_systems_is_connected_but_that_of_targets_nobody_learns(station):
-    assert open_inputs(station, OURS) == [("mpc_controller", "learned_targets")]
+def test_every_input_of_our_systems_is_connected_but_those_of_what_nobody_learns(station):
+    assert open_inputs(station, OURS) == [("mpc_controller", "learned_targets"), ("mpc_controller", "learned_dynamics")]
 
 
 def displaced(**control):
@@ -83,9 +83,19 @@ def displaced(**control):
 
 def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
     station = mut.MakeCareStation(displaced(learned_targets=True))
-    assert open_inputs(station, [*OURS, "target_learner"]) == []
+    assert open_inputs(station, [*OURS, "target_learner"]) == [("mpc_controller", "learned_dynamics")]
     assert_port_box(station.GetSubsystemByName("target_learner"))
     assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
+
+
+def test_the_dynamics_learner_is_there_when_it_is_wanted(assert_port_box):
+    scenario = Scenario()
+    scenario.control.learned_dynamics = True
+    station = mut.MakeCareStation(scenario)
+    assert open_inputs(station, [*OURS, "dynamics_learner"]) == [("mpc_controller", "learned_targets")]
+    assert_port_box(station.GetSubsystemByName("dynamics_learner"))
+    states = mut.learner_states_of(station, station.CreateDefaultContext())
+    assert states["dynamics_learner"] == pytest.approx(DynamicsEstimator().initial_state())
 
 
 def test_a_displaced_place_is_elsewhere_than_the_robot_believes():

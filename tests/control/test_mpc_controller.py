@@ -13,11 +13,13 @@ from mala_drake.clock import TICK
 from mala_drake.control import mpc_controller as mut
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
+from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.solution import Status
 from mala_drake.control.solver import MakeSolver
 from mala_drake.messages import (
     Action,
     ActionKind,
+    LearnedDynamics,
     LearnedTargets,
     MagnetCommand,
     Obstacles,
@@ -267,3 +269,42 @@ def test_a_target_learned_under_way_is_for_the_next_leg(bench):
     bench.tick(2)
     report = bench.output("leg_report")
     assert (report.outcome, report.position_error) == (Outcome.SUCCESS, pytest.approx(0.03))
+
+
+class ListeningSolver:
+    """Wraps a solver and keeps the model that each solve is given."""
+
+    name = "listening"
+
+    def __init__(self, solver):
+        self._solver, self.models = solver, []
+
+    def solve(self, initial_state, parameters, warm_start=None):
+        self.models.append(parameters.dynamics)
+        return self._solver.solve(initial_state, parameters, warm_start)
+
+
+def test_a_learned_model_is_predicted_with_from_the_next_solve_on(problem):
+    solver = ListeningSolver(MakeSolver("rti", problem))
+    bench = Bench(problem, solver=solver)
+    port = bench.system.GetInputPort("learned_dynamics").FixValue(bench.context, Value(LearnedDynamics()))
+    bench.send(GO)
+    bench.tick(2)
+    learned = LearnedDynamics((7.0, -0.07, 0.35, 0.94, 0.98, 0.93), (0.1,) * 6, updates=20)
+    port.GetMutableData().set_value(learned)
+    bench.tick()
+    nominal = DynamicsParameters()
+    assert solver.models == [nominal, nominal, DynamicsParameters(*learned.coefficients)]
+
+
+def test_a_weaker_robot_is_driven_with_more_propulsion(problem):
+    controls = []
+    for gain in (1.0, 0.8):
+        bench = Bench(problem, solver=MakeSolver("rti", problem))
+        learned = LearnedDynamics((5.0, 0.0, 0.0, gain, 1.0, 1.0), (0.1,) * 6, updates=20)
+        bench.system.GetInputPort("learned_dynamics").FixValue(bench.context, Value(learned))
+        bench.place([3.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+        bench.send(GO)
+        bench.tick()
+        controls.append(tuple(bench.output("control")))
+    assert controls[1][0] - controls[1][1] > controls[0][0] - controls[0][1] + 0.01

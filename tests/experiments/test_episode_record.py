@@ -100,6 +100,13 @@ def test_the_keys_are_the_agreed_ones_and_no_others():
     assert list(written["features"]) == ["time", "safety", "battery", "proximity", "approach"]
 
 
+def test_learned_dynamics_are_written_where_they_are_learned():
+    learned = {"yaw_coupling": [0.31, 0.01]}
+    written = strict(record(learned_dynamics=learned).to_json())
+    assert sorted(written) == sorted([*KEYS, "learned_dynamics"])
+    assert written["learned_dynamics"] == learned
+
+
 def test_a_record_is_one_line():
     assert len(record(failure="no\nplan\u2028exists").to_json().split("\n")) == 1
 

@@ -25,8 +25,8 @@ from mala_drake.station import MakeCareStation, SleepingBoxesOf, StartEpisode, l
 FAST = 1.0  # m/s
 
 
-def scenario_of(episodes, *, learned, gyroscopic_effect=1.0):
-    scenario = Scenario(episodes=episodes)
+def scenario_of(episodes, *, learned, gyroscopic_effect=1.0, task="medication"):
+    scenario = Scenario(episodes=episodes, task=task)
     scenario.control.learned_dynamics = learned
     scenario.robot.gyroscopic_effect = gyroscopic_effect
     # The same way in every episode.
@@ -199,7 +199,7 @@ def test_the_controllers_model_is_the_learned_one_from_the_first_metres_on():
 
 @pytest.mark.slow
 def test_after_two_episodes_the_model_is_the_robots():
-    station = Station(scenario_of(3, learned=True))
+    station = Station(scenario_of(3, learned=True, task="alternate"))
     first, second, third = (station.episode() for _ in range(3))
     assert all(log.record.success for log in (first, second, third))
     learner = DynamicsEstimator()
@@ -211,14 +211,13 @@ def test_after_two_episodes_the_model_is_the_robots():
     for index, truth in ((2, coupling), (3, propulsion), (4, propulsion), (5, turning)):
         off = abs(coefficients[index] - truth)
         assert off < 0.10 * abs(truth) or off < 1.96 * deviations[index]
-        assert off < 0.5 * abs(nominal[index] - truth) or index == 4
     # The plant's step turns the heading after it has found the velocities: its lateral velocity is that of a step ago.
     assert coefficients[1] / coefficients[0] == pytest.approx(-PLANT_STEP, rel=0.10)
-    before, after = (rms(prediction_errors(third, each)) for each in (nominal, coefficients))
-    assert np.linalg.norm(before) > 5.0 * np.linalg.norm(after)
-    assert before[0] > 5.0 * after[0]
-    assert before[1] > 3.0 * after[1]
-    assert before[2] > 5.0 * after[2]
+    # Held out: another medication round, and, for what the first round alone has taught, the meal.
+    for log, known in ((third, coefficients), (second, learner.coefficients(first.learned))):
+        before, after = (rms(prediction_errors(log, each)) for each in (nominal, known))
+        assert np.linalg.norm(before) > 5.0 * np.linalg.norm(after)
+        assert (before > np.array([5.0, 3.0, 5.0]) * after).all()
 
 
 @pytest.mark.slow
