@@ -197,7 +197,7 @@ def graph(
 
 @app.command()
 def experiment(
-    name: Annotated[str, typer.Argument(help="convergence or ablations.")],
+    name: Annotated[str, typer.Argument(help="convergence, ablations or targets.")],
     scenario: Annotated[
         Path | None, typer.Argument(help="Scenario file that the runs are based on; the usual scenario if left out.")
     ] = None,
@@ -211,7 +211,8 @@ def experiment(
         typer.Option(help="Of convergence: preference learners, separated by commas; the first is the main one."),
     ] = None,
     conditions: Annotated[
-        str | None, typer.Option(help="Of ablations: conditions, separated by commas; all of them if left out.")
+        str | None,
+        typer.Option(help="Of ablations and targets: conditions, separated by commas; all of them if left out."),
     ] = None,
     full: Annotated[bool, typer.Option("--full", help="Of ablations: all patients, and twice the episodes.")] = False,
     task: Annotated[str | None, typer.Option(help="medication, meal or alternate, which is usual.")] = None,

@@ -22,7 +22,7 @@ from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import CRITERIA, validated_weights
 from mala_drake.randomness import keyed_generator
 from mala_drake.resources import models_folder
-from mala_drake.ward.displacement import displaced_ward
+from mala_drake.ward.displacement import Displacement, displaced_ward, draw_displacements, taken_place
 from mala_drake.ward.items import all_items
 from mala_drake.ward.models import ward_models
 from mala_drake.ward.routes import BODY_RADIUS, GOAL_DISTANCE
@@ -75,6 +75,7 @@ class WorldConfig:
     wrong_items: list[str] = field(default_factory=list)  # Kinds handed over first, whatever is asked, for tests.
     obstacles: list[ObstacleConfig] = field(default_factory=list)  # Not on the map; only the sensor sees them.
     displaced_places: list[DisplacedPlaceConfig] = field(default_factory=list)  # Unknown to planner and controller.
+    randomly_displaced: list[str] = field(default_factory=list)  # Places displaced by 1.5 to 4 m, drawn by the seed.
     risk_variation: float = 0.0  # v: an episode's congestion risk is U(1 - v, 1 + v) times the planner's.
 
 
@@ -188,7 +189,13 @@ class Scenario:
 
     def true_ward(self, ward: Ward) -> Ward:
         """The ward of this map as it really is."""
-        return displaced_ward(ward, {moved.place: (moved.dx, moved.dy) for moved in self.world.displaced_places})
+        return displaced_ward(ward, self.displacements(ward))
+
+    def displacements(self, ward: Ward) -> dict[str, Displacement]:
+        """By place, how far it is from where this map has it, once the seed has drawn what it is to draw."""
+        told = {moved.place: (moved.dx, moved.dy) for moved in self.world.displaced_places}
+        generator = keyed_generator(self.random_seed, 0, "displaced_places")
+        return draw_displacements(ward, self.world.randomly_displaced, generator, self.unmapped_shapes, told)
 
     @property
     def unmapped_shapes(self) -> tuple[Shape, ...]:
@@ -355,21 +362,17 @@ def _check_displacements(scenario: Scenario, ward: Ward, at: str) -> None:
     """The robot has to fit wherever a place is and wherever the map says it is, by the map and really."""
     moved = scenario.world.displaced_places
     known = [place.name for place in ward.places if place.category != "home"]
-    names = [config.place for config in moved]
+    names = [*(config.place for config in moved), *scenario.world.randomly_displaced]
     for i, name in enumerate(names):
-        _one_of(f"{at}world.displaced_places[{i}].place", name, known)
+        field_name = f"displaced_places[{i}].place" if i < len(moved) else f"randomly_displaced[{i - len(moved)}]"
+        _one_of(f"{at}world.{field_name}", name, known)
         if name in names[:i]:
-            raise BadInput(f"{at}world.displaced_places[{i}].place", f"{name!r} again", "each place once")
-    if not moved:
-        return
-    true_ward = scenario.true_ward(ward)
-    solid = (*ward.shapes, *true_ward.shapes, *scenario.unmapped_shapes)
-    distances = ShapeDistances(solid)
-    for place in (*true_ward.places, *(ward.place[name] for name in names)):
-        gaps = distances([place.x, place.y])
-        if max(abs(place.x), abs(place.y)) >= ward.half_extent or gaps.min() < GOAL_DISTANCE:
-            raise BadInput(
-                f"{at}world.displaced_places",
-                f"{place.name} at ({place.x:.2f}, {place.y:.2f}) is taken by {solid[int(gaps.argmin())].name}",
-                f"{GOAL_DISTANCE:.2f} m or more to anything solid, wherever a place is and wherever the map says it is",
-            )
+            raise BadInput(f"{at}world.{field_name}", f"{name!r} again", "each place once")
+    taken = taken_place(ward, scenario.displacements(ward), scenario.unmapped_shapes)
+    if names and taken is not None:
+        place, shape = taken
+        raise BadInput(
+            f"{at}world.displaced_places",
+            f"{place.name} at ({place.x:.2f}, {place.y:.2f}) is taken by {shape.name}",
+            f"{GOAL_DISTANCE:.2f} m or more to anything solid, wherever a place is and wherever the map says it is",
+        )

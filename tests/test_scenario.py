@@ -93,6 +93,14 @@ def test_displaced_places_are_elsewhere_than_on_the_map(tmp_path):
     assert mut.Scenario().true_ward(ward) is ward
 
 
+def test_the_seed_draws_what_is_displaced_at_random(tmp_path):
+    text = "{random_seed: %d, world: {randomly_displaced: [pantry, stove]}}"
+    scenarios = [load(tmp_path, text % seed) for seed in (0, 1, 0)]
+    drawn = [scenario.displacements(scenario.load_ward()) for scenario in scenarios]
+    assert drawn[0] == drawn[2] != drawn[1]
+    assert list(drawn[0]) == ["pantry", "stove"]
+
+
 def test_obstacles_are_shapes_seen_from_above(tmp_path):
     text = "world: {obstacles: [{name: cart, x: 3, y: 4, yaw: 0.5, half_length: 0.7, half_width: 0.2}]}"
     (shape,) = load(tmp_path, text).unmapped_shapes
@@ -167,6 +175,11 @@ def test_no_number_may_be_negative(prefix, name):
         (
             "world: {displaced_places: [{place: pantry, dy: 2}, {place: pantry, dy: -2}]}",
             ["world.displaced_places[1].place: 'pantry' again", "each place once"],
+        ),
+        ("world: {randomly_displaced: [attic]}", ["world.randomly_displaced[0]: 'attic'", "pantry"]),
+        (
+            "world: {displaced_places: [{place: pantry, dy: 2}], randomly_displaced: [pantry]}",
+            ["world.randomly_displaced[0]: 'pantry' again"],
         ),
         ("world: {displaced_places: [{place: pantry, dx: .nan}]}", ["displaced_places[0].dx: nan", "finite"]),
         (  # The shelf would stand where the map says that the robot is to stand.

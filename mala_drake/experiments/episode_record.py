@@ -63,12 +63,15 @@ class EpisodeRecord:
     battery_end: float
     learned_dynamics: dict[str, list[float]] | None = None
     timing: dict[str, float] = field(default_factory=dict)
+    displaced_legs: list[dict[str, Any]] = field(default_factory=list)  # See `DisplacedLegs`.
 
     def to_json(self) -> str:
         """The record as one line of JSON; numbers that are not finite become null."""
         written = {name: value for name, value in vars(self).items() if name not in _NOT_WRITTEN}
         if self.learned_dynamics is None:
             del written["learned_dynamics"]
+        if not self.displaced_legs:
+            del written["displaced_legs"]
         return json.dumps(plain(written), ensure_ascii=False)
 
     @property

@@ -8,6 +8,7 @@ from typing import Any
 from pydrake.systems.framework import Context, Diagram
 
 from mala_drake.control.parameters import DynamicsParameters
+from mala_drake.experiments.displaced_legs import DisplacedLegs
 from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, plan_variant, timing
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.messages import (
@@ -16,7 +17,9 @@ from mala_drake.messages import (
     ActionReport,
     EpisodeReport,
     LearnedDynamics,
+    LearnedTargets,
     Outcome,
+    PlaceMismatch,
     Preferences,
     Ratings,
     TaskReport,
@@ -43,12 +46,19 @@ class EpisodeWatch:
         self._action = Action()
         self._actions: list[str] = []
         self._legs: list[ActionReport] = []
+        self._displaced_legs = DisplacedLegs(scenario, self._learned_targets())
         self._before: Preferences = self._read("preference_learner", "preferences")
         self._charge_before = self._charge()
 
     def _read(self, system: str, port: str) -> Any:
         subsystem = self._station.GetSubsystemByName(system)
         return subsystem.GetOutputPort(port).Eval(subsystem.GetMyContextFromRoot(self._context))
+
+    def _learned_targets(self) -> LearnedTargets:
+        if not self._station.HasSubsystemNamed("target_learner"):
+            return LearnedTargets()
+        learned: LearnedTargets = self._read("target_learner", "learned_targets")
+        return learned
 
     def _charge(self) -> float:
         return float(self._read("battery", "charge")[0])
@@ -74,6 +84,8 @@ class EpisodeWatch:
         seen = self._legs[-1].sequence if self._legs else 0
         if report.finished and report.sequence > seen:
             self._legs.append(report)
+            mismatch: PlaceMismatch = self._read("fuzzy_grounding", "place_mismatch")
+            self._displaced_legs.add(self._action, report, mismatch, self._learned_targets())
             if report.outcome is not Outcome.SUCCESS:
                 news.append(f"the leg ended: {report.outcome.value} ({report.detail})")
         return news
@@ -124,6 +136,7 @@ class EpisodeWatch:
                 mpc_seconds=self._controller.solve_seconds[self._solves :],
                 plan_seconds=self._planner.solve_seconds[self._plans :],
             ),
+            displaced_legs=self._displaced_legs.entries,
         )
 
     def _report(self) -> EpisodeReport:

@@ -14,6 +14,7 @@ from mala_drake.experiments.episode_reader import read_episodes
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord, plain
 from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_summary import timing_of, totals_of
+from mala_drake.experiments.target_summary import target_figures
 from mala_drake.learning.information_bound import efficiency
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.bound_results import bounds_of
@@ -82,7 +83,9 @@ def _condition(experiment: Experiment, runs: Sequence[Run]) -> dict[str, Any]:
         "prediction_error": _prediction_error(records),
         **totals_of(records),
     }
-    return {"totals": totals, "profiles": {figures.profile: _profile(figures) for figures, _ in profiles}}
+    by_profile = {figures.profile: _profile(figures) for figures, _ in profiles}
+    targets = target_figures([run.episodes for run in runs])
+    return {"totals": totals, "profiles": by_profile, **({"targets": targets} if targets else {})}
 
 
 def _profile(figures: ProfileResults) -> dict[str, Any]:

@@ -19,8 +19,9 @@ from mala_drake.experiments.experiment_folder import begun_in, experiment_folder
 from mala_drake.experiments.experiment_kind import ExperimentKind, ExperimentOptions, chosen_experiment
 from mala_drake.experiments.experiment_summary import summarise_experiment
 from mala_drake.experiments.run_summary import SUMMARY_FILE
+from mala_drake.experiments.targets import TARGETS
 
-EXPERIMENTS = {kind.name: kind for kind in (CONVERGENCE, ABLATION_KIND)}
+EXPERIMENTS = {kind.name: kind for kind in (CONVERGENCE, ABLATION_KIND, TARGETS)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

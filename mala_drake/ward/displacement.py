@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from mala_drake.errors import BadInput
-from mala_drake.ward.ward_map import Ward
+from mala_drake.messages import Shape
+from mala_drake.ward.routes import GOAL_DISTANCE
+from mala_drake.ward.shapes import ShapeDistances
+from mala_drake.ward.ward_map import Place, Ward
 
 Displacement = tuple[float, float]
 """(dx, dy), metres."""
+
+DRAWN_DISTANCES = (1.5, 4.0)
+"""Metres from the map at least and at most of a displacement that is drawn (facts of the paper's experiment)."""
+
+_DRAWS = 1000  # Of one displacement, before it is given up.
 
 
 def displaced_ward(ward: Ward, displacements: Mapping[str, Displacement]) -> Ward:
@@ -39,3 +50,58 @@ def displaced_ward(ward: Ward, displacements: Mapping[str, Displacement]) -> War
         dx, dy = displacements.get(piece.serves, none)
         furniture.append(replace(piece, x=piece.x + dx, y=piece.y + dy))
     return replace(ward, places=tuple(places), furniture=tuple(furniture))
+
+
+def taken_place(
+    ward: Ward, displacements: Mapping[str, Displacement], unmapped: Iterable[Shape] = ()
+) -> tuple[Place, Shape] | None:
+    """A place at which the robot cannot stand, and what stands there; None if there is no such place.
+
+    It has to fit wherever a place is and wherever the map says it is, both by the map and really.
+
+    Args:
+        ward: the map.
+        displacements: by place.
+        unmapped: what else stands in the ward.
+    """
+    true_ward = displaced_ward(ward, displacements)
+    solid = (*ward.shapes, *true_ward.shapes, *unmapped)
+    distances = ShapeDistances(solid)
+    for place in (*true_ward.places, *(ward.place[name] for name in displacements)):
+        gaps = distances([place.x, place.y])
+        if max(abs(place.x), abs(place.y)) >= ward.half_extent or gaps.min() < GOAL_DISTANCE:
+            return place, solid[int(gaps.argmin())]
+    return None
+
+
+def draw_displacements(
+    ward: Ward,
+    places: Iterable[str],
+    generator: np.random.Generator,
+    unmapped: Iterable[Shape] = (),
+    told: Mapping[str, Displacement] | None = None,
+) -> dict[str, Displacement]:
+    """Displacements evenly distributed over distance and direction, such that the robot can stand at every place.
+
+    Args:
+        ward: the map.
+        places: to be displaced, one after the other.
+        generator: that draws.
+        unmapped: what else stands in the ward.
+        told: displacements that there are besides; they come first in what is returned.
+
+    Raises:
+        BadInput: for a place that is not on the map, or that cannot be displaced.
+    """
+    found: dict[str, Displacement] = dict(told or {})
+    unmapped = tuple(unmapped)
+    for name in places:
+        for _ in range(_DRAWS):
+            distance, angle = generator.uniform(*DRAWN_DISTANCES), generator.uniform(0.0, math.tau)
+            candidate = found | {name: (float(distance * np.cos(angle)), float(distance * np.sin(angle)))}
+            if taken_place(ward, candidate, unmapped) is None:
+                found = candidate
+                break
+        else:
+            raise BadInput("displaced place", repr(name), "room for it and its furniture elsewhere")
+    return found

@@ -107,6 +107,13 @@ def test_learned_dynamics_are_written_where_they_are_learned():
     assert written["learned_dynamics"] == learned
 
 
+def test_legs_to_displaced_places_are_written_where_there_are_some():
+    leg = {"place": "pantry", "outcome": "success", "mismatch": 0.25, "moved": True, "x": -3.0}
+    written = strict(record(displaced_legs=[leg]).to_json())
+    assert sorted(written) == sorted([*KEYS, "displaced_legs"])
+    assert written["displaced_legs"] == [leg]
+
+
 def test_a_record_is_one_line():
     assert len(record(failure="no\nplan\u2028exists").to_json().split("\n")) == 1
 

@@ -65,6 +65,11 @@ def test_with_the_place_as_it_is_seen_targets_are_found_and_meals_are_delivered(
     assert records[0].mismatches > 0
     assert records[-1].mismatches == 0
     assert all(record.collisions == 0 for record in records)
+    legs = [leg for record in records for leg in record.displaced_legs]
+    for name in {leg["place"] for leg in legs}:
+        last = [leg for leg in legs if leg["place"] == name][-1]
+        assert last["distance_to_true_m"] == pytest.approx(distances[name])
+    assert sum(leg["moved"] for leg in legs) == sum(updates.values())
 
 
 @pytest.mark.slow

@@ -5,7 +5,10 @@ import pytest
 
 import mala_drake.ward.displacement as mut
 from mala_drake.errors import BadInput
+from mala_drake.messages import Shape
 from mala_drake.ward.items import all_items, table_spots, work_spot
+from mala_drake.ward.routes import GOAL_DISTANCE, RoutePlanner
+from mala_drake.ward.shapes import ShapeDistances
 from mala_drake.ward.ward_map import LoadWard
 
 WARD = LoadWard()
@@ -45,3 +48,45 @@ def test_without_displacements_the_ward_is_its_map():
 def test_a_place_that_is_not_on_the_map_is_refused():
     with pytest.raises(BadInput, match=r"displaced place.*'attic'.*pantry"):
         mut.displaced_ward(WARD, {"attic": (1.0, 0.0)})
+
+
+DRAWN = ("pantry", "prep_station", "quality_check", "patient_bed_left")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_drawn_places_are_as_far_away_as_asked_and_the_robot_can_stand_there(seed):
+    drawn = mut.draw_displacements(WARD, DRAWN, np.random.default_rng(seed))
+    assert tuple(drawn) == DRAWN
+    assert all(1.5 <= math.hypot(*by) <= 4.0 for by in drawn.values())
+    true = mut.displaced_ward(WARD, drawn)
+    for ward in (WARD, true):
+        distances = ShapeDistances(ward.shapes)
+        routes = RoutePlanner(ward.shapes)
+        for name in DRAWN:
+            for place in (true.place[name], WARD.place[name]):
+                assert distances((place.x, place.y)).min() >= GOAL_DISTANCE
+                assert routes.route((0.0, 0.0), (place.x, place.y)) is not None
+
+
+def test_another_seed_displaces_otherwise_and_the_same_one_alike():
+    drawn = [mut.draw_displacements(WARD, DRAWN, np.random.default_rng(seed)) for seed in (0, 1, 0)]
+    assert drawn[0] == drawn[2] != drawn[1]
+
+
+def test_what_is_told_stays_and_is_allowed_for():
+    told = {"stove": (0.0, -2.5)}
+    drawn = mut.draw_displacements(WARD, ("pantry",), np.random.default_rng(0), told=told)
+    assert list(drawn) == ["stove", "pantry"]
+    assert drawn["stove"] == told["stove"]
+
+
+def test_a_place_for_which_there_is_no_room_is_refused():
+    filled = Shape("sand", -3.0, 15.0, half_length=9.0, half_width=9.0)
+    with pytest.raises(BadInput, match=r"displaced place: 'pantry'.*room"):
+        mut.draw_displacements(WARD, ("pantry",), np.random.default_rng(0), [filled])
+
+
+def test_a_place_that_is_taken_is_told_with_what_stands_there():
+    assert mut.taken_place(WARD, {}) is None
+    place, shape = mut.taken_place(WARD, {"pantry": (1.5, 0.0)})
+    assert (place.name, shape.name) == ("pantry", "pantry_shelf")

@@ -1,0 +1,57 @@
+"""What is kept of the legs to places that are not where the map says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from mala_drake.messages import Action, ActionReport, LearnedTargets, PlaceMismatch
+from mala_drake.scenario import Scenario
+from mala_drake.ward.ward_map import Place
+
+
+class DisplacedLegs:
+    """Collects one entry a leg to a displaced place, in the order driven.
+
+    An entry is fit for JSON: `place`, `outcome`, `mismatch` (1 - mu at the end of the leg, the continuous E^psi),
+    `closed_loop_cost` (R^o, the tracking cost over the leg), `moved` (whether the target was moved after it), and where
+    the target is then: `x`, `y` and `distance_to_true_m`, metres.
+    """
+
+    def __init__(self, scenario: Scenario, learned: LearnedTargets) -> None:
+        """Knows where the places of a scenario are and where the map has them, and what is `learned` at the start."""
+        self._updates = learned.updates
+        ward = scenario.load_ward()
+        displacements = scenario.displacements(ward)
+        self._mapped = {name: ward.place[name] for name in displacements}
+        self._true: Mapping[str, Place] = {name: scenario.true_ward(ward).place[name] for name in displacements}
+        self.entries: list[dict[str, Any]] = []
+
+    def add(self, action: Action, report: ActionReport, mismatch: PlaceMismatch, learned: LearnedTargets) -> None:
+        """Takes in a leg that has ended, if it was to a displaced place.
+
+        Args:
+            action: that the leg was of.
+            report: on its end.
+            mismatch: at its end.
+            learned: after it.
+        """
+        name = action.place
+        if name not in self._true or mismatch.place != name:
+            return
+        mapped, true = self._mapped[name], self._true[name]
+        x, y = next(((x, y) for place, x, y in learned.targets if place == name), (mapped.x, mapped.y))
+        self.entries.append(
+            {
+                "place": name,
+                "outcome": report.outcome.value,
+                "mismatch": mismatch.error,
+                "closed_loop_cost": report.closed_loop_cost,
+                "moved": learned.updates > self._updates,
+                "x": x,
+                "y": y,
+                "distance_to_true_m": math.dist((x, y), (true.x, true.y)),
+            }
+        )
+        self._updates = learned.updates

@@ -1,0 +1,45 @@
+"""What became of displaced targets: figures by place over the runs of one condition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from mala_drake.experiments.episode_record import EpisodeRecord
+
+
+def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[str, Any]]:
+    """By displaced place: how it was found, over the runs that have driven to it.
+
+    `runs` is how many have; `found` how many of them came to be without mismatch; `updates` how often the target had
+    been moved until then, and `final_distance_m` how far from the true place it was at the end, medians and maxima.
+    """
+    legs = [[leg for record in records for leg in record.displaced_legs] for records in runs]
+    places = sorted({leg["place"] for run in legs for leg in run})
+    figures = {}
+    for place in places:
+        of_place = [[leg for leg in run if leg["place"] == place] for run in legs]
+        driven = [run for run in of_place if run]
+        updates = [count for run in driven if (count := _updates_until_gone(run)) is not None]
+        finals = [run[-1]["distance_to_true_m"] for run in driven]
+        figures[place] = {
+            "runs": len(driven),
+            "found": len(updates),
+            "median_updates": float(np.median(updates)) if updates else None,
+            "max_updates": max(updates, default=None),
+            "median_final_distance_m": float(np.median(finals)),
+            "max_final_distance_m": max(finals),
+        }
+    return figures
+
+
+def _updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:
+    """How often the target had been moved before a leg stopped without mismatch; None if none has."""
+    updates = 0
+    for leg in legs:
+        if leg["outcome"] == "success" and leg["mismatch"] == 0.0:
+            return updates
+        updates += bool(leg["moved"])
+    return None

@@ -1,0 +1,55 @@
+from types import SimpleNamespace
+
+import pytest
+
+import mala_drake.experiments.target_summary as mut
+
+
+def leg(place, mismatch, moved, distance, outcome="success"):
+    return {
+        "place": place,
+        "outcome": outcome,
+        "mismatch": mismatch,
+        "moved": moved,
+        "distance_to_true_m": distance,
+    }
+
+
+def run(*episodes):
+    return [SimpleNamespace(displaced_legs=list(legs)) for legs in episodes]
+
+
+def test_updates_are_counted_until_a_leg_stops_without_mismatch():
+    runs = [
+        run([leg("pantry", 0.5, True, 1.2)], [leg("pantry", 0.1, True, 0.4), leg("pantry", 0.0, True, 0.1)]),
+        run([leg("pantry", 0.4, True, 0.3), leg("pantry", 0.0, False, 0.3)]),
+    ]
+    assert mut.target_figures(runs) == {
+        "pantry": {
+            "runs": 2,
+            "found": 2,
+            "median_updates": 1.5,
+            "max_updates": 2,
+            "median_final_distance_m": pytest.approx(0.2),
+            "max_final_distance_m": 0.3,
+        }
+    }
+
+
+def test_legs_that_moved_nothing_are_no_updates():
+    runs = [run([leg("pantry", 0.5, False, 2.0), leg("pantry", 0.5, True, 0.2), leg("pantry", 0.0, False, 0.2)])]
+    assert mut.target_figures(runs)["pantry"]["max_updates"] == 1
+
+
+def test_a_place_is_not_found_while_its_legs_fail_or_miss():
+    runs = [run([leg("stove", 0.5, True, 2.0), leg("stove", 0.0, False, 2.0, "blocked")])]
+    figures = mut.target_figures(runs)["stove"]
+    assert (figures["found"], figures["median_updates"], figures["max_updates"]) == (0, None, None)
+    assert figures["max_final_distance_m"] == 2.0
+
+
+def test_each_place_counts_the_runs_that_have_driven_to_it():
+    runs = [run([leg("stove", 0.0, False, 0.0)]), run([leg("pantry", 0.5, False, 2.0)]), run([])]
+    figures = mut.target_figures(runs)
+    assert {place: each["runs"] for place, each in figures.items()} == {"pantry": 1, "stove": 1}
+    assert mut.target_figures([run([])]) == {}
