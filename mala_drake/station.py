@@ -292,34 +292,30 @@ class _StationBuilder:
         if scenario.planner.learned_costs:
             estimator = CostEstimator(self._task_planner.predictions)
             self._cost_learner = self._add("cost_learner", CostLearner(learner=estimator))
-        self._target_learner = self._add_target_learner() if scenario.control.learned_targets else None
+        wanted = scenario.control.learned_targets
+        self._target_learners = [self._add("target_learner", self._make_target_learner())] if wanted else []
         self._dynamics_learner = None
         if scenario.control.learned_dynamics:
             dynamics = DynamicsEstimator(pose_noise=max(scenario.robot.position_noise, scenario.robot.yaw_noise))
             self._dynamics_learner = self._add("dynamics_learner", DynamicsLearner(learner=dynamics))
 
-    def _add_target_learner(self) -> TargetLearner:
+    def _make_target_learner(self) -> TargetLearner:
         """The learner with a solver of its own, since legs are simulated while the controller drives."""
         control, ward = self._scenario.control, self._ward
         problem = OptimalControlProblem(horizon=control.horizon)
         solver = MakeSolver(control.solver, problem, **control.solver_options)
-        learner = TargetLearner(
+        return TargetLearner(
             learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
             yaws={place.name: place.yaw for place in ward.places},
             sensitivity=TargetSensitivity(problem, solver, self._guide, self._congestion),
             mapped=ward.shapes,
             geometric=control.target_evidence == "geometric",
         )
-        added: TargetLearner = self._add("target_learner", learner)
-        return added
 
     def connect(self) -> None:
         """Wires everything, source by source."""
         plant, robot = self._plant, self._robot
-        base_state = plant.get_state_output_port(robot.robot)
-        arm_state = plant.get_state_output_port(robot.arm)
-        # Who is there only if the scenario wants it.
-        targets = [self._target_learner] if self._target_learner is not None else []
+        targets = self._target_learners
         # What each layer tells the others.
         self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter)
         self._wire(
@@ -350,8 +346,8 @@ class _StationBuilder:
         for target_learner in targets:
             self._wire(target_learner, "learned_targets", self._controller)
         # What everybody senses.
-        for name, port in (("plant_state", base_state), ("arm_state", arm_state)):
-            self._fan_out(name, port)
+        self._fan_out("plant_state", plant.get_state_output_port(robot.robot))
+        self._fan_out("arm_state", plant.get_state_output_port(robot.arm))
         if self._cost_learner is not None:
             self._wire(self._feature_meter, "action_features", self._cost_learner)
             self._wire(self._cost_learner, "learned_costs", self._task_planner)
