@@ -51,8 +51,9 @@ class TargetEstimator(AbstractLearner):
     """Moves targets to where the mismatch vanishes.
 
     By the fuzzy mismatch alone a target ends on the plateau of the membership, where nothing tells one point from
-    another: the step aims `tolerance` past its edge, since the robot may stop that far from its target. With the
-    geometric error as well it ends at the place itself; what is below `tolerance` is averaged, not followed.
+    another: the step aims twice the `tolerance` past its edge, since the robot may stop that far from its target this
+    time and the next. With the geometric error as well it ends at the place itself; what is below `tolerance` is
+    averaged, not followed.
 
     Like other learners it holds settings only. What is learned is one vector: for each place the target's displacement
     from the map in metres, the number of updates, and how many of them were below the tolerance.
@@ -75,8 +76,8 @@ class TargetEstimator(AbstractLearner):
         Args:
             nominal: targets (x, y) as on the map, by place, metres.
             tolerance: metres from its target at which the robot may stop, > 0.
-            trust_radius: metres that the first update may move a target at most, > 0.
-            decay: update n may move it 1 / (1 + decay n) times as far, >= 0.
+            trust_radius: metres that the first update moves a target at most, > 0; more only if something stands there.
+            decay: update n moves it 1 / (1 + decay n) times as far at most, >= 0.
             farthest: metres that a target may be from the map, > 0.
 
         Raises:
@@ -117,7 +118,7 @@ class TargetEstimator(AbstractLearner):
             return state.copy()
         after = state.copy()
         row = after.reshape(-1, _ENTRIES)[self.places.index(place)]
-        step = self._bounded(self._gauss_newton(evidence, fine=row[_FINE]), updates=row[_UPDATES])
+        step = self._gauss_newton(evidence, fine=row[_FINE])
         if not step.any():
             return after
         lengths = self._lengths(float(np.linalg.norm(step)), evidence, updates=row[_UPDATES])
@@ -169,7 +170,7 @@ class TargetEstimator(AbstractLearner):
         rows, residuals = np.zeros((0, 2)), np.zeros(0)
         slope = float(np.linalg.norm(evidence.error_gradient))
         if evidence.error > 0.0 and slope > _LEAST_SLOPE:
-            past = 0.0 if evidence.offset is not None else self._tolerance * slope
+            past = 0.0 if evidence.offset is not None else 2.0 * self._tolerance * slope
             rows, residuals = evidence.error_gradient[None], np.array([-evidence.error - past])
         if evidence.offset is not None:
             gain = 1.0 / (2.0 + fine) if self._is_fine(evidence) else 1.0
@@ -185,15 +186,14 @@ class TargetEstimator(AbstractLearner):
     def _radius(self, updates: float) -> float:
         return self._trust_radius / (1.0 + self._decay * updates)
 
-    def _bounded(self, step: FloatArray, *, updates: float) -> FloatArray:
-        return step * min(1.0, self._radius(updates) / max(float(np.linalg.norm(step)), 1e-12))
-
     def _lengths(self, length: float, evidence: TargetEvidence, *, updates: float) -> tuple[float, ...]:
-        """The lengths of a step by preference; what stands at the edge of the plateau may be passed by going on."""
+        """The lengths of a step by preference: within the trust region, beyond what is in the way, nearer.
+
+        What stands between the target and the place is only passed by a long step; a step over the plateau may go on.
+        """
         farther = _EXTENSIONS if evidence.offset is None else _EXTENSIONS[:1]
-        allowed = max(length, self._radius(updates))
-        longer = tuple(length + more for more in farther if length + more <= allowed)
-        return (*longer, *(share * length for share in _SHARES))
+        trusted = min(length, self._radius(updates))
+        return (trusted, *(length + more for more in farther), *(share * trusted for share in _SHARES))
 
     def _free_share(
         self, place: str, offset: FloatArray, step: FloatArray, lengths: tuple[float, ...], is_free: IsFree | None
