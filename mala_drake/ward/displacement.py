@@ -11,7 +11,7 @@ import numpy as np
 from mala_drake.errors import BadInput
 from mala_drake.messages import Shape
 from mala_drake.ward.routes import GOAL_DISTANCE
-from mala_drake.ward.shapes import ShapeDistances
+from mala_drake.ward.shapes import ShapeDistances, outline
 from mala_drake.ward.ward_map import Place, Ward
 
 Displacement = tuple[float, float]
@@ -20,6 +20,7 @@ Displacement = tuple[float, float]
 DRAWN_DISTANCES = (1.5, 4.0)
 """Metres from the map at least and at most of a displacement that is drawn (facts of the paper's experiment)."""
 
+_FURNITURE_GAP = 0.1  # Metres.
 _DRAWS = 1000  # Of one displacement, before it is given up.
 
 
@@ -55,9 +56,10 @@ def displaced_ward(ward: Ward, displacements: Mapping[str, Displacement]) -> War
 def taken_place(
     ward: Ward, displacements: Mapping[str, Displacement], unmapped: Iterable[Shape] = ()
 ) -> tuple[Place, Shape] | None:
-    """A place at which the robot cannot stand, and what stands there; None if there is no such place.
+    """A place at which the robot or its furniture cannot stand, and what stands there; None if there is no such place.
 
-    It has to fit wherever a place is and wherever the map says it is, both by the map and really.
+    The robot has to fit wherever a place is and wherever the map says it is, both by the map and really. Displaced
+    furniture keeps clear of everything else that is solid: boxes stand at its edge.
 
     Args:
         ward: the map.
@@ -71,6 +73,14 @@ def taken_place(
         gaps = distances([place.x, place.y])
         if max(abs(place.x), abs(place.y)) >= ward.half_extent or gaps.min() < GOAL_DISTANCE:
             return place, solid[int(gaps.argmin())]
+    for name in displacements:
+        piece = true_ward.furniture_of.get(name)
+        if piece is None:
+            continue
+        ground = outline(piece.shape, margin=_FURNITURE_GAP)
+        for other in (*true_ward.shapes, *unmapped):
+            if other.name != piece.name and ground.intersects(outline(other)):
+                return true_ward.place[name], other
     return None
 
 

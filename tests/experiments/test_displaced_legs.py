@@ -7,7 +7,7 @@ from mala_drake.messages import Action, ActionKind, ActionReport, LearnedTargets
 from mala_drake.scenario import DisplacedPlaceConfig, Scenario
 
 MAPPED = (-3.0, 15.0)
-BY = (-0.78, -1.84)
+BY = (-0.5, 1.9)
 
 
 def go(place):

@@ -13,7 +13,7 @@ from mala_drake.scenario import DisplacedPlaceConfig, Scenario
 from mala_drake.station import MakeCareStation
 
 MOVED = {
-    "pantry": (-0.78, -1.84),
+    "pantry": (-0.5, 1.9),
     "prep_station": (-1.77, 1.77),
     "quality_check": (2.12, 2.12),
     "patient_bed_left": (-1.06, 1.06),

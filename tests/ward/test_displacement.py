@@ -90,3 +90,8 @@ def test_a_place_that_is_taken_is_told_with_what_stands_there():
     assert mut.taken_place(WARD, {}) is None
     place, shape = mut.taken_place(WARD, {"pantry": (1.5, 0.0)})
     assert (place.name, shape.name) == ("pantry", "pantry_shelf")
+
+
+def test_displaced_furniture_does_not_stand_in_a_wall():
+    place, shape = mut.taken_place(WARD, {"pantry": (0.0, -2.0)})  # The robot itself would fit there.
+    assert (place.name, shape.name) == ("pantry", "kitchen_wall_middle")
