@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,7 +24,7 @@ Vector = NDArray[np.float64]
 _INFEASIBLE = (SolutionResult.kInfeasibleConstraints, SolutionResult.kInfeasibleOrUnbounded)
 
 
-class DrakeQpSolver:
+class DrakeQpSolver(ABC):
     """`QpSolver` with a solver of Drake. A soft row gets a slack variable; the program is built anew each time."""
 
     name: ClassVar[str]
@@ -69,8 +70,9 @@ class DrakeQpSolver:
             iterations=self._iterations(result),
         )
 
+    @abstractmethod
     def _iterations(self, result: MathematicalProgramResult) -> int:
-        raise NotImplementedError
+        """How many iterations the solver has taken."""
 
 
 class ClarabelQpSolver(DrakeQpSolver):
