@@ -13,8 +13,9 @@ from mala_drake.experiments.episode_record import EpisodeRecord
 def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[str, Any]]:
     """By displaced place: how it was found, over the runs that have driven to it.
 
-    `runs` is how many have; `found` how many of them came to be without mismatch; `updates` how often the target had
-    been moved until then, and `final_distance_m` how far from the true place it was at the end, medians and maxima.
+    `runs` is how many have; `found` how many of them came to be without mismatch for good; `updates` how often the
+    target had been moved until then, and `final_distance_m` how far from the true place it was at the end, medians and
+    maxima.
     """
     legs = [[leg for record in records for leg in record.displaced_legs] for records in runs]
     places = sorted({leg["place"] for run in legs for leg in run})
@@ -22,7 +23,7 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
     for place in places:
         of_place = [[leg for leg in run if leg["place"] == place] for run in legs]
         driven = [run for run in of_place if run]
-        updates = [count for run in driven if (count := _updates_until_gone(run)) is not None]
+        updates = [count for run in driven if (count := updates_until_gone(run)) is not None]
         finals = [run[-1]["distance_to_true_m"] for run in driven]
         figures[place] = {
             "runs": len(driven),
@@ -35,11 +36,12 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
     return figures
 
 
-def _updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:
-    """How often the target had been moved before a leg stopped without mismatch; None if none has."""
-    updates = 0
-    for leg in legs:
-        if leg["outcome"] == "success" and leg["mismatch"] == 0.0:
-            return updates
-        updates += bool(leg["moved"])
-    return None
+def updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:
+    """How often the target had been moved when the mismatch was gone for good; None if it is there at the end.
+
+    It is gone for good before the first of the last legs that all stopped at their target without mismatch.
+    """
+    first = len(legs)
+    while first and legs[first - 1]["outcome"] == "success" and legs[first - 1]["mismatch"] == 0.0:
+        first -= 1
+    return sum(bool(leg["moved"]) for leg in legs[:first]) if first < len(legs) else None

@@ -2,7 +2,8 @@
 
 Paper, Sec. "Learning Continuous Target Parameters from Symbolic-Control Mismatches". Each seed displaces the places in
 another way. Target by target, `summary.json` tells after how many updates the mismatch was gone and how far the learned
-target is from the true one.
+target is from the true one. The last condition is the ablation "outer loop only": the full system without the learners
+of its inner loop, in the same displaced wards.
 """
 
 from __future__ import annotations
@@ -19,15 +20,24 @@ DISPLACED = ("pantry", "prep_station", "quality_check", "patient_bed_left")
 
 _CONDITIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
     {
+        "full": (
+            {"control": {"learned_targets": True, "target_evidence": "geometric", "learned_dynamics": True}},
+            "everything is learned: the patient's wishes, what actions cost, targets (as under geometric) and the "
+            "dynamics of the controller's model",
+        ),
         "geometric": (
             {"control": {"learned_targets": True, "target_evidence": "geometric"}},
-            "targets are learned from the missing membership and from the place as it is seen",
+            "targets are learned from the missing membership and from the place as it is seen; the model is nominal",
         ),
         "fuzzy": (
             {"control": {"learned_targets": True, "target_evidence": "fuzzy"}},
-            "targets are learned from the missing membership alone",
+            "targets are learned from missing memberships alone; the model is nominal",
         ),
-        "map": ({"control": {"learned_targets": False}}, "targets stay where the map says"),
+        "outer_loop_only": (
+            {"control": {"learned_targets": False, "learned_dynamics": False}},
+            "the planner learns, the controller does not: the patient's wishes and what actions cost are learned, but "
+            "legs end where the map says, and the model is nominal",
+        ),
     }
 )
 

@@ -16,6 +16,8 @@ from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.plans import meal_picture, variant_picture
 from mala_drake.reporting.figures.prediction import prediction_picture
 from mala_drake.reporting.figures.style import styled
+from mala_drake.reporting.figures.target_distances import target_distance_picture
+from mala_drake.reporting.figures.target_map import target_map_pictures
 from mala_drake.reporting.figures.task_graphs import task_graph_pictures
 from mala_drake.reporting.figures.weights import final_weights_picture, trajectory_picture
 from mala_drake.reporting.findings import headline, learning_sentences, plan_sentences, problems
@@ -23,11 +25,15 @@ from mala_drake.reporting.report_page import Section, report_page
 from mala_drake.reporting.result_tables import condition_table, convergence_table, execution_table, timing_table
 from mala_drake.reporting.results import Results, load_results
 from mala_drake.reporting.table import Table
+from mala_drake.reporting.target_findings import target_headline, target_sentences
+from mala_drake.reporting.target_results import has_targets
+from mala_drake.reporting.target_tables import target_condition_table, target_table
 from mala_drake.reporting.wording import words
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 PAGE = "report.html"
 _TITLE = "Learning what the patient wants"
+_TARGETS_TITLE = "Finding places that are not where the map says"
 
 
 def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
@@ -49,9 +55,14 @@ def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
     out = folder / "report" if out is None else out
     check_writable(out / PAGE)
     with styled():
-        sections = tuple(_sections(results, _ward(results)))
+        ward = _ward(results)
+        sections = tuple(_sections(results, ward))
         page = report_page(
-            title=_TITLE, lead=_lead(results), headline=headline(results), problems=problems(results), sections=sections
+            title=_TARGETS_TITLE if has_targets(results) else _TITLE,
+            lead=_lead(results),
+            headline=(*target_headline(results, ward), *headline(results)),
+            problems=problems(results),
+            sections=sections,
         )
         written = [path for item in _content(sections) for path in _write(item, out)]
     (out / PAGE).write_text(page, encoding="utf-8")
@@ -59,6 +70,18 @@ def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
 
 
 def _sections(results: Results, ward: Ward) -> Iterator[Section]:
+    if has_targets(results):
+        yield Section(
+            "targets",
+            "Targets",
+            target_sentences(results, ward),
+            (
+                *target_distance_picture(results, ward),
+                target_table(results, ward),
+                *target_map_pictures(results, ward),
+                target_condition_table(results, ward),
+            ),
+        )
     yield Section(
         "learning",
         "Learning",

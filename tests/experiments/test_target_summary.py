@@ -53,3 +53,10 @@ def test_each_place_counts_the_runs_that_have_driven_to_it():
     figures = mut.target_figures(runs)
     assert {place: each["runs"] for place, each in figures.items()} == {"pantry": 1, "stove": 1}
     assert mut.target_figures([run([])]) == {}
+
+
+def test_a_mismatch_that_comes_back_was_not_gone():
+    legs = [leg("stove", 0.5, True, 1.1), leg("stove", 0.0, False, 1.1), leg("stove", 0.02, True, 0.7)]
+    assert mut.updates_until_gone(legs) is None
+    assert mut.updates_until_gone([*legs, leg("stove", 0.0, False, 0.7)]) == 2
+    assert mut.updates_until_gone([]) is None

@@ -23,17 +23,21 @@ def test_it_can_be_asked_for_by_name():
 
 
 @pytest.mark.parametrize(
-    ("condition", "learned", "evidence"), [("geometric", True, "geometric"), ("fuzzy", True, "fuzzy")]
+    ("condition", "evidence", "dynamics"),
+    [("full", "geometric", True), ("geometric", "geometric", False), ("fuzzy", "fuzzy", False)],
 )
-def test_the_papers_places_are_displaced_and_their_targets_learned(condition, learned, evidence):
+def test_the_papers_places_are_displaced_and_their_targets_learned(condition, evidence, dynamics):
     chosen = scenario(condition)
     assert tuple(chosen.displacements(chosen.load_ward())) == mut.DISPLACED
-    assert (chosen.control.learned_targets, chosen.control.target_evidence) == (learned, evidence)
+    control = chosen.control
+    assert (control.learned_targets, control.target_evidence, control.learned_dynamics) == (True, evidence, dynamics)
 
 
-def test_one_condition_learns_nothing_in_the_same_ward():
-    learning, fixed = scenario("geometric", seed=3), scenario("map", seed=3)
+def test_the_outer_loop_alone_learns_what_the_patient_wants_in_the_same_ward():
+    learning, fixed = scenario("full", seed=3), scenario("outer_loop_only", seed=3)
     assert not fixed.control.learned_targets
+    assert not fixed.control.learned_dynamics
+    assert fixed.learner == learning.learner
     ward = fixed.load_ward()
     assert fixed.displacements(ward) == learning.displacements(ward)
 
@@ -46,4 +50,4 @@ def test_a_scenario_may_say_itself_what_is_displaced():
 
 
 def test_conditions_come_in_the_order_of_the_table():
-    assert list(mut.target_conditions(Scenario(), ("map", "geometric"))) == ["geometric", "map"]
+    assert list(mut.target_conditions(Scenario(), ("outer_loop_only", "full"))) == ["full", "outer_loop_only"]

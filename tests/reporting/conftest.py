@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +13,13 @@ from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
 from mala_drake.experiments.episode_record import EpisodeFile, EpisodeRecord, by_criterion
+from mala_drake.experiments.experiment import Experiment
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.learning.projected_gradient import ProjectedGradient
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.patient.rating import RatingHabits, rate
 from mala_drake.randomness import keyed_generator
+from mala_drake.scenario import DisplacedPlaceConfig, Scenario
 
 
 def _nested_diagram() -> Diagram:
@@ -160,3 +164,58 @@ def _simulate_results(
 def simulate_results() -> Callable[..., Path]:
     """Writes the results of an experiment without the physics: real ratings, real learner, features from a table."""
     return _simulate_results
+
+
+DISPLACED = {"pantry": (-0.5, 1.9), "patient_bed_left": (-1.06, 1.06)}
+"""Metres by place, for each seed the same."""
+
+
+def _displaced_leg(place, mapped, off, *, mismatch, moved, outcome="success"):
+    """A leg after which the target is `off` from the true place."""
+    x, y = (mapped[i] + DISPLACED[place][i] + off[i] for i in range(2))
+    distance = float(np.hypot(*off))
+    entry = {"place": place, "outcome": outcome, "mismatch": mismatch, "closed_loop_cost": 10.0, "moved": moved}
+    return {**entry, "x": x, "y": y, "distance_to_true_m": distance}
+
+
+def _simulate_targets(folder, legs, *, seeds=(0, 1), change=None):
+    """Writes runs with displaced places.
+
+    Args:
+        folder: to write to.
+        legs: by condition, a list an episode of (place, offset of the target from the true place, mismatch, moved).
+        seeds: of the runs.
+        change: alters a record before it is written.
+    """
+    base = Scenario(task="alternate", episodes=max(map(len, legs.values())))
+    base.world.displaced_places = [DisplacedPlaceConfig(place, *by) for place, by in DISPLACED.items()]
+    ward = base.load_ward()
+    mapped = {place: (ward.place[place].x, ward.place[place].y) for place in DISPLACED}
+    experiment = Experiment("targets", base, {name: {} for name in legs}, ("comfort_focused",), seeds)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "experiment.json").write_text(json.dumps(experiment.to_json()))
+    for condition, episodes in legs.items():
+
+        def displace(record, episodes=episodes):
+            entries = [
+                _displaced_leg(place, mapped[place], off, mismatch=mismatch, moved=moved)
+                for place, off, mismatch, moved in episodes[record.episode]
+            ]
+            record = replace(record, displaced_legs=entries)
+            return change(record) if change else record
+
+        _simulate_results(
+            folder,
+            profiles=("comfort_focused",),
+            seeds=seeds,
+            episodes=len(episodes),
+            condition=condition,
+            change=displace,
+        )
+    return folder
+
+
+@pytest.fixture(scope="session")
+def simulate_targets() -> Callable[..., Path]:
+    """Writes the results of an experiment on displaced targets, with legs as told."""
+    return _simulate_targets

@@ -148,6 +148,23 @@ def test_a_plain_run_of_an_unknown_patient_is_shown_with_intervals_and_without_t
     assert "runs know what matters most" not in text
 
 
+def test_displaced_targets_have_a_section_of_their_own(tmp_path, simulate_targets):
+    learned = [
+        [("pantry", (0.0, -1.2), 0.3, True), ("pantry", (0.1, 0.0), 0.0, True)],
+        [("patient_bed_left", (0.4, 0.0), 0.2, True), ("patient_bed_left", (0.4, 0.0), 0.0, False)],
+    ]
+    mapped = [[("pantry", (0.5, -1.9), 0.3, False)]]
+    simulate_targets(tmp_path, {"full": learned, "outer_loop_only": mapped})
+    written = mut.write_report(tmp_path)
+    names = {path.name for path in written}
+    assert {"target_distance.png", "target_map.png", "target_paths.png"} <= names
+    assert {"targets.md", "targets.tex", "target_conditions.md", "target_conditions.tex"} <= names
+    text = Page(written[0].read_text(encoding="utf-8")).text
+    assert "places that are not where the map says" in text
+    assert "4/4displaced places found" in text
+    assert "Under outer loop only no target ever moves." in text
+
+
 def test_no_results_are_one_line(tmp_path):
     with pytest.raises(BadInput, match="has no episodes"):
         mut.write_report(tmp_path)
