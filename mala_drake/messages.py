@@ -96,6 +96,8 @@ class TaskReport(Message):
     mismatches: int = 0
     last_action: Action = Action()  # The newest of `actions`, and how it ended.
     last_outcome: Outcome = Outcome.RUNNING
+    last_predicted: tuple[float, ...] = (0.0,) * 5  # Its features as predicted at dispatch.
+    last_differing: tuple[Atom, ...] = ()  # The atoms, in lower case, that were expected after it or seen, not both.
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +123,7 @@ class ActionReport(Message):
     position_error: float = 0.0
     yaw_error: float = 0.0
     terminal_speed: float = 0.0
-    closed_loop_cost: float = 0.0
+    closed_loop_cost: float = 0.0  # R^o = sum of G over the steps so far, and W of the reached state once it has ended.
     solves: int = 0
     failures: int = 0
     detail: str = ""
@@ -256,6 +258,22 @@ class ActionFeatures(Message):
     charge_used: float = 0.0
     discomfort: float = 0.0
     approach_error: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ActionEvaluation(Message):
+    """How a finished action turned out: its rewards R^e and R^o, and its mismatches E^psi and E^C.
+
+    `weights` are the preferences that it was planned with. Rewards and costs are defined in `ActionMeter`.
+    """
+
+    action: Action = Action()
+    outcome: Outcome = Outcome.RUNNING
+    weights: tuple[float, ...] = (0.2,) * 5
+    external_reward: float = 0.0  # R^e.
+    closed_loop_cost: float | None = None  # R^o of a leg, None of an action in place.
+    state_mismatch: float = 0.0  # E^psi, in [0, 1].
+    cost_mismatch: float = 0.0  # E^C, positive for an action that cost more than predicted.
 
 
 @dataclass(frozen=True, slots=True)

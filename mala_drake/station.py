@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pydrake.geometry import Box, Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role, SceneGraph
-from pydrake.math import RigidTransform, RollPitchYaw
-from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role, SceneGraph
+from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder
 
@@ -30,6 +29,7 @@ from mala_drake.learning.target_estimator import TargetEstimator
 from mala_drake.learning.target_learner import TargetLearner
 from mala_drake.patient.patient import Patient
 from mala_drake.planning.task_planner import TaskPlanner
+from mala_drake.robot.action_meter import ActionMeter
 from mala_drake.robot.arm import Arm
 from mala_drake.robot.battery import Battery
 from mala_drake.robot.drivetrain import Drivetrain
@@ -39,6 +39,7 @@ from mala_drake.robot.in_place_executor import InPlaceExecutor
 from mala_drake.robot.item_positions import ItemPositions
 from mala_drake.robot.items import AddItems, ItemBodies
 from mala_drake.robot.magnet import Magnet
+from mala_drake.robot.obstacle import AddObstacle
 from mala_drake.robot.obstacle_sensor import ObstacleSensor
 from mala_drake.robot.plant import AddCareRobot, CareRobot, MakeCarePlant, X_WB_at
 from mala_drake.robot.safety_monitor import SafetyMonitor
@@ -46,7 +47,7 @@ from mala_drake.robot.sleeping_boxes import SleepingBoxes
 from mala_drake.robot.state_estimator import StateEstimator
 from mala_drake.robot.ward_plant import AddWard
 from mala_drake.robot.world import World
-from mala_drake.scenario import ObstacleConfig, Scenario, Validate
+from mala_drake.scenario import Scenario, Validate
 from mala_drake.scheduling.scheduler import Scheduler
 from mala_drake.scheduling.sequence import task_names
 from mala_drake.ward.congestion import Congestion
@@ -54,7 +55,6 @@ from mala_drake.ward.items import all_items
 from mala_drake.ward.legs import leg_planner
 from mala_drake.ward.ward_map import Ward
 
-_TROLLEY_COLOR = (0.85, 0.35, 0.20, 1.0)
 _FRAME_RATE = 20.0  # Pictures per second in Meshcat.
 
 
@@ -176,8 +176,8 @@ class _StationBuilder:
         AddWard(self._plant, self._true_ward, visible=self._meshcat is not None)
         self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
         self._items = AddItems(self._plant, self._scene_graph, self._kept, self._robot)
-        for config in self._scenario.world.obstacles:
-            _add_obstacle(self._plant, config)
+        for shape, config in zip(self._scenario.unmapped_shapes, self._scenario.world.obstacles, strict=True):
+            AddObstacle(self._plant, shape, height=config.height)
         home = next(place for place in self._ward.places if place.category == "home")
         self._plant.SetDefaultFloatingBaseBodyPose(self._robot.base, X_WB_at(home.x, home.y, home.yaw))
         self._plant.Finalize()
@@ -268,6 +268,8 @@ class _StationBuilder:
             "feature_meter",
             FeatureMeter(ward, risk_variation=scenario.world.risk_variation, seed=scenario.random_seed),
         )
+        bedsides = [place.name for place in ward.places if place.category == "bedside"]
+        self._action_meter = self._add("action_meter", ActionMeter(bedsides=bedsides))
 
     def add_learning(self) -> None:
         """The patient, and who learns: from ratings, what actions cost, where places are, how the robot answers."""
@@ -317,7 +319,7 @@ class _StationBuilder:
         plant, robot = self._plant, self._robot
         targets = self._target_learners
         # What each layer tells the others.
-        self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter)
+        self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter, self._action_meter)
         self._wire(
             self._task_planner,
             "action",
@@ -326,10 +328,11 @@ class _StationBuilder:
             self._world,
             self._grounding,
             self._feature_meter,
+            self._action_meter,
             *targets,
         )
-        self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter)
-        self._wire(self._controller, "leg_report", self._task_planner, *targets)
+        self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter, self._action_meter)
+        self._wire(self._controller, "leg_report", self._task_planner, self._action_meter, *targets)
         self._wire(self._executor, "in_place_report", self._task_planner, self._world)
         self._wire(self._executor, "magnet", self._magnet, self._world, self._controller, *targets)
         self._wire(self._executor, "arm_target", self._arm)
@@ -338,11 +341,12 @@ class _StationBuilder:
         self._wire(self._world, "handed_item", self._executor)
         self._wire(self._world, "clamped", self._magnet)
         self._wire(self._grounding, "symbolic_state", self._task_planner)
-        self._wire(self._grounding, "place_mismatch", *targets)
+        self._wire(self._grounding, "place_mismatch", self._action_meter, *targets)
         self._wire(self._obstacle_sensor, "obstacles", self._controller, *targets)
         self._wire(self._feature_meter, "episode_report", self._patient)
+        self._wire(self._feature_meter, "action_features", self._action_meter)
         self._wire(self._patient, "ratings", self._learner)
-        self._wire(self._learner, "preferences", self._task_planner, self._controller, *targets)
+        self._wire(self._learner, "preferences", self._task_planner, self._controller, self._action_meter, *targets)
         for target_learner in targets:
             self._wire(target_learner, "learned_targets", self._controller)
         # What everybody senses.
@@ -388,12 +392,3 @@ class _StationBuilder:
         diagram = self._builder.Build()
         diagram.set_name("care_station")
         return diagram
-
-
-def _add_obstacle(plant: MultibodyPlant, config: ObstacleConfig) -> None:
-    """Fixes an upright box to the floor."""
-    box = Box(2 * config.half_length, 2 * config.half_width, config.height)
-    X_WO = RigidTransform(RollPitchYaw(0.0, 0.0, config.yaw), [config.x, config.y, 0.5 * config.height])
-    name = f"obstacle/{config.name}"
-    plant.RegisterCollisionGeometry(plant.world_body(), X_WO, box, name, CoulombFriction(0.5, 0.5))
-    plant.RegisterVisualGeometry(plant.world_body(), X_WO, box, name, list(_TROLLEY_COLOR))

@@ -25,6 +25,7 @@ OURS = [
     "world",
     "obstacle_sensor",
     "feature_meter",
+    "action_meter",
     "state_estimator",
     "safety_monitor",
     "item_positions",

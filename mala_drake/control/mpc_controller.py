@@ -32,7 +32,7 @@ from .action_parameters import DrivingStyle, make_parameters, style_of
 from .leg import Leg, LegGuide, Pose, pose_errors
 from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
-from .parameters import DynamicsParameters, StageParameters
+from .parameters import DynamicsParameters, StageParameters, TerminalParameters
 from .reference import make_reference
 from .solution import Solution, Status
 from .solver import Solver
@@ -52,6 +52,7 @@ class _Driving(Message):
     warm_start: NDArray[np.float64] | None = None
     report: ActionReport = ActionReport()
     predicted: PredictedTrajectory = PredictedTrajectory()
+    terminal: TerminalParameters | None = None  # Of the newest solve.
     bad_solves: int = 0  # In a row.
     bad_states: int = 0  # In a row.
 
@@ -238,6 +239,7 @@ class MpcController(LeafSystem):
             control=tuple(float(value) for value in solution.controls[0]),
             warm_start=solution.shifted(),
             predicted=PredictedTrajectory(tuple(tuple(map(float, row)) for row in solution.states)),
+            terminal=parameters.terminal,
             report=replace(report, closed_loop_cost=report.closed_loop_cost + stage_cost),
             bad_solves=0,
         )
@@ -272,6 +274,7 @@ class MpcController(LeafSystem):
     def _finish(self, driving: _Driving, robot_state: NDArray[np.float64], outcome: Outcome, detail: str) -> _Driving:
         target = driving.leg.target if driving.leg else self._targets.get(driving.action.place)
         position_error, yaw_error = pose_errors(robot_state, target) if target else (0.0, 0.0)
+        terminal_cost = _terminal_cost(robot_state, target, driving.terminal) if target and driving.terminal else 0.0
         report = replace(
             driving.report,
             outcome=outcome,
@@ -279,6 +282,7 @@ class MpcController(LeafSystem):
             position_error=position_error,
             yaw_error=yaw_error,
             terminal_speed=abs(float(robot_state[StateIndex.FORWARD_VELOCITY])),
+            closed_loop_cost=driving.report.closed_loop_cost + terminal_cost,
             detail=detail,
         )
         return replace(driving, report=report, control=PARKED, warm_start=None, predicted=PredictedTrajectory())
@@ -290,7 +294,17 @@ def _is_usable(solution: Solution) -> bool:
 
 
 def _stage_cost(state: NDArray[np.float64], control: NDArray[np.float64], stage: StageParameters) -> float:
-    """The tracking cost of one executed step, G(z, v; p^g): their sum is the leg's closed-loop cost."""
-    error = state - stage.references[0]
+    """The tracking cost of one executed step, G(z, v; p^g)."""
+    effort = float(control @ (stage.control_weights * control))
+    return effort + _squared_error(state, stage.references[0], stage.state_weights)
+
+
+def _terminal_cost(state: NDArray[np.float64], target: Pose, terminal: TerminalParameters) -> float:
+    """W(z; p^w) of the state that a leg ended in, which was to be at rest in its target pose."""
+    return _squared_error(state, np.concatenate((target, np.zeros(STATE_SIZE - len(target)))), terminal.weights)
+
+
+def _squared_error(state: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+    error = state - wanted
     error[StateIndex.YAW] = math.remainder(error[StateIndex.YAW], math.tau)
-    return float(error @ (stage.state_weights * error) + control @ (stage.control_weights * control))
+    return float(error @ (weights * error))

@@ -15,8 +15,8 @@ class DisplacedLegs:
     """Collects one entry a leg to a displaced place, in the order driven.
 
     An entry is fit for JSON: `place`, `outcome`, `mismatch` (1 - mu at the end of the leg, the continuous E^psi),
-    `closed_loop_cost` (R^o, the tracking cost over the leg), `moved` (whether the target was moved after it), and where
-    the target is then: `x`, `y` and `distance_to_true_m`, metres.
+    `closed_loop_cost` (R^o, the leg's tracking and terminal cost), `moved` (whether the target was moved after it), and
+    where the target is then: `x`, `y` and `distance_to_true_m`, metres.
     """
 
     def __init__(self, scenario: Scenario, learned: LearnedTargets) -> None:

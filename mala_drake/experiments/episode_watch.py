@@ -13,6 +13,7 @@ from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, p
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.messages import (
     Action,
+    ActionEvaluation,
     ActionKind,
     ActionReport,
     EpisodeReport,
@@ -45,6 +46,7 @@ class EpisodeWatch:
         self._plans = len(self._planner.solve_seconds)
         self._action = Action()
         self._actions: list[str] = []
+        self._evaluations: list[ActionEvaluation] = []
         self._legs: list[ActionReport] = []
         self._displaced_legs = DisplacedLegs(scenario, self._learned_targets())
         self._before: Preferences = self._read("preference_learner", "preferences")
@@ -88,6 +90,9 @@ class EpisodeWatch:
             self._displaced_legs.add(self._action, report, mismatch, self._learned_targets())
             if report.outcome is not Outcome.SUCCESS:
                 news.append(f"the leg ended: {report.outcome.value} ({report.detail})")
+        evaluation: ActionEvaluation = self._read("action_meter", "action_evaluation")
+        if evaluation.action.sequence > (self._evaluations[-1].action.sequence if self._evaluations else 0):
+            self._evaluations.append(evaluation)
         return news
 
     def record(self, *, wall_seconds: float, cpu_seconds: float) -> EpisodeRecord:
@@ -130,6 +135,7 @@ class EpisodeWatch:
             battery_start=self._charge_before,
             battery_end=self._charge(),
             learned_dynamics=self._learned_dynamics(),
+            executed_actions=[_entry(evaluation) for evaluation in self._evaluations],
             timing=timing(
                 wall_seconds=wall_seconds,
                 cpu_seconds=cpu_seconds,
@@ -168,6 +174,18 @@ class EpisodeWatch:
         """The leg that the end of the episode's time cuts short, if there is one."""
         report: ActionReport = self._read("mpc_controller", "leg_report")
         return [report] if report.sequence > 0 and not report.finished else []
+
+
+def _entry(evaluation: ActionEvaluation) -> dict[str, Any]:
+    """An executed action, fit for JSON."""
+    return {
+        "action": evaluation.action.text,
+        "outcome": evaluation.outcome.value,
+        "external_reward": evaluation.external_reward,
+        "closed_loop_cost": evaluation.closed_loop_cost,
+        "state_mismatch": evaluation.state_mismatch,
+        "cost_mismatch": evaluation.cost_mismatch,
+    }
 
 
 def describe(action: Action) -> str:

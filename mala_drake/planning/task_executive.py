@@ -70,7 +70,7 @@ class TaskExecutive:
         differing = care.mismatch(progress.expected, observed) if progress.expected is not None else ()
         progress = progress.executed(
             report.outcome,
-            mismatched=bool(differing),
+            differing=differing,
             standing_at=_standing_at(progress, report.outcome, observed.place),
         )
         if report.outcome is Outcome.BATTERY_EMPTY:

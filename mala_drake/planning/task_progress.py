@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from mala_drake.messages import Action, Message, Outcome, PlanMessage, Task, TaskReport
+from mala_drake.messages import Action, Atom, Message, Outcome, PlanMessage, Task, TaskReport
 from mala_drake.planning.state import SymbolicState
 
 
@@ -58,15 +58,17 @@ class TaskProgress(Message):
             report=TaskReport(sequence=task.sequence),
         )
 
-    def executed(self, outcome: Outcome, *, mismatched: bool, standing_at: str) -> TaskProgress:
-        """The current action has ended, well or badly."""
+    def executed(self, outcome: Outcome, *, differing: tuple[Atom, ...], standing_at: str) -> TaskProgress:
+        """The current action has ended, well or badly; `differing` atoms are not as expected."""
         report = replace(
             self.report,
             actions=(*self.report.actions, self.action.text),
             predicted_features=tuple(a + b for a, b in zip(self.report.predicted_features, self.features, strict=True)),
-            mismatches=self.report.mismatches + mismatched,
+            mismatches=self.report.mismatches + bool(differing),
             last_action=self.action,
             last_outcome=outcome,
+            last_predicted=self.features,
+            last_differing=differing,
         )
         return replace(self, report=report, expected=None, standing_at=standing_at)
 

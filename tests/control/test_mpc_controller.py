@@ -152,6 +152,19 @@ def test_at_rest_at_the_target_it_reports_success_with_its_errors(bench):
     assert tuple(bench.output("control")) == mut.PARKED
 
 
+def test_the_closed_loop_cost_ends_with_the_terminal_cost_of_the_reached_state(bench):
+    bench.send(GO)
+    bench.tick()
+    bench.place([5.95, 0.03, 0.05, 0.01, 0.0, 0.0])
+    before = bench.output("leg_report").closed_loop_cost
+    bench.tick(2)
+    report = bench.output("leg_report")
+    assert report.outcome is Outcome.SUCCESS
+    errors = np.array([0.05, 0.03, 0.05, 0.01, 0.0, 0.0])
+    terminal = 100.0 * np.array([34.0, 34.0, 3.0, 10.4, 10.4, 10.4])  # Of the uniform preferences.
+    assert report.closed_loop_cost == pytest.approx(before + terminal @ errors**2)
+
+
 def test_a_failed_solve_brakes_and_the_next_one_goes_on(problem):
     bench = Bench(problem, solver=FailingSolver(MakeSolver("snopt", problem), 2, 1))
     bench.send(GO)

@@ -107,6 +107,14 @@ def test_learned_dynamics_are_written_where_they_are_learned():
     assert written["learned_dynamics"] == learned
 
 
+def test_executed_actions_are_written_before_the_timing():
+    entry = {"action": "(recharge robot1)", "outcome": "success", "external_reward": -0.1, "closed_loop_cost": None}
+    written = strict(record(executed_actions=[entry]).to_json())
+    assert sorted(written) == sorted([*KEYS, "executed_actions"])
+    assert written["executed_actions"] == [entry]
+    assert list(written).index("executed_actions") == list(written).index("timing") - 1
+
+
 def test_legs_to_displaced_places_are_written_where_there_are_some():
     leg = {"place": "pantry", "outcome": "success", "mismatch": 0.25, "moved": True, "x": -3.0}
     written = strict(record(displaced_legs=[leg]).to_json())

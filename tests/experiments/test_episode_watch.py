@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
 from mala_drake.clock import TICK
 from mala_drake.experiments import episode_watch as mut
+from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.messages import Action, ActionKind
 from mala_drake.scenario import Scenario
 from mala_drake.station import MakeCareStation, StartEpisode
+from mala_drake.ward.features import FEATURE_SCALES
 
 SECONDS = 6.0
 
@@ -43,6 +46,21 @@ def test_watching_changes_nothing_and_tells_each_action_once(station):
     assert state.tolist() == unwatched.tolist()
     assert len(news) == 1
     assert news[0].startswith("drive to pharmacy ")
+
+
+def test_the_rewards_of_the_actions_add_up_to_the_cost_of_the_episode():
+    scenario = Scenario(episodes=1)
+    scenario.learner.name, scenario.learner.initial_weights = "fixed", [0.4, 0.3, 0.1, 0.1, 0.1]
+    record, _ = simulate_episode(MakeCareStation(scenario), scenario, episode=0, carried=Carried())
+    weights = np.array(scenario.learner.initial_weights)
+    assert [entry["action"] for entry in record.executed_actions] == record.actions
+    costs = [-entry["external_reward"] for entry in record.executed_actions]
+    assert max(record.features.values()) < 1.0  # None is cut.
+    # All of the episode's time belongs to an action, but a tick before the first and one after the last one.
+    ticks = weights[0] * 2 * TICK / FEATURE_SCALES["medication"].time
+    assert sum(costs) == pytest.approx(weights @ list(record.features.values()), abs=1.5 * ticks)
+    predicted = [cost - entry["cost_mismatch"] for cost, entry in zip(costs, record.executed_actions, strict=True)]
+    assert sum(predicted) == pytest.approx(weights @ list(record.predicted_features.values()))
 
 
 def test_an_episode_cut_short_is_a_failure_with_what_was_measured_so_far(station):

@@ -58,6 +58,11 @@ def test_medicine_and_supplement_are_delivered_and_the_robot_learns(delivery):
     assert record.distance_to_true == pytest.approx(preference_distance(record.weights_after, WEIGHTS))
     assert len(record.terminal_errors_m) == sum(text.startswith("drive") for _, _, text in notes.actions) == 3
     assert 0.0 < record.battery_end < record.battery_start == 1.0
+    entries = record.executed_actions
+    assert [entry["action"] for entry in entries] == record.actions
+    assert max(entry["state_mismatch"] for entry in entries) == 0.0
+    assert sum(entry["closed_loop_cost"] is not None for entry in entries) == 3
+    assert max(abs(entry["cost_mismatch"]) for entry in entries) < 0.05
     for criterion, value in record.features.items():
         assert value == pytest.approx(record.predicted_features[criterion], abs=0.1)
 

@@ -38,11 +38,13 @@ def test_the_first_plans_cost_is_reported_and_later_plans_are_counted() -> None:
 
 
 def test_executed_actions_sum_up_in_the_report() -> None:
-    progress = acting().executed(Outcome.BLOCKED, mismatched=True, standing_at="supply_A")
+    progress = acting().executed(Outcome.BLOCKED, differing=(("at", "robot1", "supply_a"),), standing_at="supply_A")
     assert not progress.acting
     assert (progress.report.last_action, progress.report.last_outcome) == (LEG, Outcome.BLOCKED)
+    assert progress.report.last_predicted == acting().features
+    assert progress.report.last_differing == (("at", "robot1", "supply_a"),)
     again = progress.dispatching(LEG, STATE, (0.1, 0.0, 0.1, 0.0, 0.5))
-    again = again.executed(Outcome.SUCCESS, mismatched=False, standing_at="")
+    again = again.executed(Outcome.SUCCESS, differing=(), standing_at="")
     assert again.report.last_outcome is Outcome.SUCCESS
     assert again.report.actions == (LEG.text, LEG.text)
     assert again.report.predicted_features == (0.2, 0.2, 0.4, 0.0, 0.5)
