@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from pydrake.systems.analysis import Simulator
 
-from mala_drake.clock import TICK
+from mala_drake.clock import SENSE_OFFSET, TICK
 from mala_drake.experiments.run import RunOptions, run_scenario
 from mala_drake.messages import Outcome
 from mala_drake.patient.profiles import PROFILES
@@ -219,7 +219,7 @@ def test_a_state_estimate_that_turns_nan_brakes_the_robot_and_is_reported():
         samples.SetFromVector(np.full(samples.size(), np.nan))
         episode.ticks += 1
         # The estimator samples at the beginning of a tick: break its sample before the controller looks at it.
-        episode.simulator.AdvanceTo((episode.ticks - 1) * TICK + 0.0005)
+        episode.simulator.AdvanceTo((episode.ticks - 1) * TICK + SENSE_OFFSET + 0.0002)
         samples.SetFromVector(np.full(samples.size(), np.nan))
         episode.simulator.AdvanceTo(episode.ticks * TICK - 0.0005)
         if episode.read("mpc_controller", "leg_report").finished:

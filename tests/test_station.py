@@ -13,7 +13,7 @@ from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.errors import BadInput
 from mala_drake.learning import DynamicsEstimator, Posterior
 from mala_drake.robot.plant import X_WB_at
-from mala_drake.robot.plant_state import V_X, X, Y, yaw_of
+from mala_drake.robot.plant_state import V_X, X, Y, planar_state_of, yaw_of
 from mala_drake.scenario import DisplacedPlaceConfig, ObstacleConfig, Scenario
 
 OURS = [
@@ -133,6 +133,15 @@ def test_a_plain_simulator_runs_it_and_the_robot_drives_off_home(station):
     assert np.hypot(*(robot_state(station, context)[[X, Y]] - start)) > 3.0
     assert read(station, context, "battery", "charge")[0] < 1.0
     assert read(station, context, "safety_monitor", "safety")[1] == 0
+
+
+def test_every_tick_is_sampled_just_after_the_plants_step(station):
+    simulator = Simulator(station)
+    context = simulator.get_mutable_context()
+    for tick in range(100):
+        simulator.AdvanceTo(tick * TICK + 0.5 * PLANT_STEP)
+        sampled = read(station, context, "state_estimator", "robot_state")
+        assert sampled == pytest.approx(planar_state_of(robot_state(station, context).tolist()), abs=1e-12)
 
 
 def test_the_robot_moves_continuously_and_where_its_wheels_take_it(station):

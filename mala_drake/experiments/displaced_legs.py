@@ -22,11 +22,15 @@ class DisplacedLegs:
     def __init__(self, scenario: Scenario, learned: LearnedTargets) -> None:
         """Knows where the places of a scenario are and where the map has them, and what is `learned` at the start."""
         self._updates = learned.updates
+        self.entries: list[dict[str, Any]] = []
+        self._mapped: Mapping[str, Place] = {}
+        self._true: Mapping[str, Place] = {}
+        if not (scenario.world.displaced_places or scenario.world.randomly_displaced):
+            return
         ward = scenario.load_ward()
         displacements = scenario.displacements(ward)
         self._mapped = {name: ward.place[name] for name in displacements}
-        self._true: Mapping[str, Place] = {name: scenario.true_ward(ward).place[name] for name in displacements}
-        self.entries: list[dict[str, Any]] = []
+        self._true = {name: scenario.true_ward(ward).place[name] for name in displacements}
 
     def add(self, action: Action, report: ActionReport, mismatch: PlaceMismatch, learned: LearnedTargets) -> None:
         """Takes in a leg that has ended, if it was to a displaced place.

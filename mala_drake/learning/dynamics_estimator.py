@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import casadi
 import numpy as np
 
-from mala_drake.clock import PLANT_STEP, TICK
+from mala_drake.clock import TICK
 from mala_drake.control.model import (
     CONTROL_SIZE,
     DYNAMICS_SIZE,
@@ -55,11 +55,10 @@ _NOISE_PRIOR = 5.0  # Samples that the first noise is worth.
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Transition:
-    """One logged (z, v, z+): two states a period apart, and the controls of this period and of the one before."""
+    """One logged (z, v, z+): two states a period apart, and the control between them."""
 
     before: FloatArray  # z, shape (6,).
     control: FloatArray  # v, shape (3,).
-    previous_control: FloatArray  # Shape (3,).
     after: FloatArray  # z+, shape (6,).
 
 
@@ -75,7 +74,6 @@ class DynamicsEstimator(AbstractLearner):
         self,
         *,
         period: float = TICK,
-        control_delay: float = PLANT_STEP / TICK,
         pose_noise: float = 0.0,
         least_speed: float = 0.3,
         least_excitation: float = 0.003,
@@ -87,7 +85,6 @@ class DynamicsEstimator(AbstractLearner):
 
         Args:
             period: between two samples, seconds.
-            control_delay: share of a period in which the control of the one before still acts, in [0, 1).
             pose_noise: standard deviation of the measured positions, metres, or yaw, radians, whichever is larger.
             least_speed: below which braking, which is passive and ends at rest, is not learned from, m/s.
             least_excitation: velocity change that coefficients off by `NOMINAL_DEVIATIONS` must at least make for a
@@ -107,10 +104,7 @@ class DynamicsEstimator(AbstractLearner):
         for name, value in limits.items():
             if not (math.isfinite(value) and value >= 0.0):
                 raise BadInput(f"dynamics {name}", repr(value), "a finite number >= 0")
-        if not 0.0 <= control_delay < 1.0:
-            raise BadInput("dynamics control_delay", repr(control_delay), "a number in [0, 1)")
         self._period = period
-        self._delay = control_delay
         self._pose_noise = pose_noise
         self._least_speed = least_speed
         self._least_excitation = least_excitation
@@ -159,10 +153,10 @@ class DynamicsEstimator(AbstractLearner):
         motion contradicts their rates were not taken a period apart.
         """
         t = transition
-        numbers = np.concatenate((t.before, t.control, t.previous_control, t.after))
-        if not np.isfinite(numbers).all() or _parked(t.control) or _parked(t.previous_control):
+        numbers = np.concatenate((t.before, t.control, t.after))
+        if not np.isfinite(numbers).all() or _parked(t.control):
             return False
-        braking = max(t.control[ControlIndex.BRAKE], t.previous_control[ControlIndex.BRAKE]) > 0.0
+        braking = t.control[ControlIndex.BRAKE] > 0.0
         speeds = t.before[StateIndex.FORWARD_VELOCITY], t.after[StateIndex.FORWARD_VELOCITY]
         if braking and min(speeds) < self._least_speed:
             return False
@@ -178,8 +172,7 @@ class DynamicsEstimator(AbstractLearner):
 
     def prediction(self, transition: Transition, coefficients: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What the model predicts of a transition: z+, (6,), and the slopes of its velocities by p^f, (3, 6)."""
-        acting = (1.0 - self._delay) * transition.control + self._delay * transition.previous_control
-        predicted, slopes = self._predict(transition.before, acting, coefficients)
+        predicted, slopes = self._predict(transition.before, transition.control, coefficients)
         return np.array(predicted).ravel(), np.array(slopes)
 
     def coefficients(self, state: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from mala_drake.learning.abstract_learner import FloatArray
 from mala_drake.learning.dynamics_estimator import DynamicsEstimator, Transition
 from mala_drake.messages import LearnedDynamics
 
-_LOG_SIZE = STATE_SIZE + 2 * CONTROL_SIZE + 1
+_LOG_SIZE = STATE_SIZE + CONTROL_SIZE + 1
 
 
 class DynamicsLearner(LeafSystem):
@@ -28,8 +28,8 @@ class DynamicsLearner(LeafSystem):
         - learned_dynamics
 
     `learned_dynamics` is a `LearnedDynamics`. The discrete state is the learner's own vector followed by the log that
-    the next sample needs: the robot state and the control of the last tick, the control of the one before, and for how
-    many ticks there is a log, up to 2. The log begins anew with every episode.
+    the next sample needs: the robot state and the control of the last tick, and 1 if there was one, else 0. The log
+    begins anew with every episode.
     """
 
     def __init__(self, *, learner: DynamicsEstimator) -> None:
@@ -67,10 +67,9 @@ class DynamicsLearner(LeafSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         log: FloatArray = context.get_discrete_state_vector().value()[-_LOG_SIZE:]
-        before, control, previous_control, _ = np.split(log, np.cumsum([STATE_SIZE, CONTROL_SIZE, CONTROL_SIZE]))
+        before, control, begun = np.split(log, np.cumsum([STATE_SIZE, CONTROL_SIZE]))
         state = self.learner_state(context)
         now = np.array(self._robot_state.Eval(context))
-        if log[-1] == 2.0:
-            state = self._learner.update(state, Transition(before, control, previous_control, now))
-        ticks = min(log[-1] + 1.0, 2.0)
-        discrete_state.set_value(np.concatenate((state, now, self._control.Eval(context), control, [ticks])))
+        if begun.item() == 1.0:
+            state = self._learner.update(state, Transition(before, control, now))
+        discrete_state.set_value(np.concatenate((state, now, self._control.Eval(context), [1.0])))

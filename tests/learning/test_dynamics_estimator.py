@@ -1,5 +1,4 @@
 import json
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -7,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import mala_drake.learning.dynamics_estimator as mut
-from mala_drake.clock import TICK
+from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.control.model import step_function
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.errors import BadInput
@@ -26,16 +25,15 @@ def next_state(state, control, dynamics=TRUTH):
 def log(samples, *, seed=0, excited=True, noise=NOISE, dynamics=TRUTH):
     """What a robot of known dynamics does: states anew for each sample, controls that excite everything, or nothing."""
     generator = np.random.default_rng(seed)
-    controls = generator.uniform((0.0, 0.0, -1.0), (2.0, 1.0, 1.0), (samples + 1, 3))
+    controls = generator.uniform((0.0, 0.0, -1.0), (2.0, 1.0, 1.0), (samples, 3))
     if not excited:
         controls[:, 0], controls[:, 1:] = 1e-3, 0.0
-    for previous, control in pairwise(controls):
+    for control in controls:
         before = generator.uniform((-9, -9, -3, 0.5, -0.01, -0.8), (9, 9, 3, 1.4, 0.01, 0.8))
         if not excited:
             before[4:] = 0.0
-        acting = 0.95 * control + 0.05 * previous
-        after = next_state(before, acting, dynamics) + noise * generator.standard_normal(6)
-        yield mut.Transition(before, control, previous, after)
+        after = next_state(before, control, dynamics) + noise * generator.standard_normal(6)
+        yield mut.Transition(before, control, after)
 
 
 def learned(transitions, learner=None):
@@ -91,7 +89,7 @@ def with_outliers(transitions, share, size):
     generator = np.random.default_rng(7)
     for t in transitions:
         blunder = generator.choice((-size, size), 3) * (generator.random() < share)
-        yield mut.Transition(t.before, t.control, t.previous_control, t.after + np.append(np.zeros(3), blunder))
+        yield mut.Transition(t.before, t.control, t.after + np.append(np.zeros(3), blunder))
 
 
 def test_outliers_hardly_matter():
@@ -111,9 +109,8 @@ def test_outliers_hardly_matter():
 def least_squares_of_turning(transitions):
     rows, values = [], []
     for t in transitions:
-        acting = 0.95 * t.control + 0.05 * t.previous_control
         mean = 0.5 * (t.before + t.after)
-        rows.append((acting[2], -mean[3] * mean[5]))
+        rows.append((t.control[2], -mean[3] * mean[5]))
         values.append((t.after[5] - t.before[5]) / TICK)
     return np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
 
@@ -128,7 +125,7 @@ def test_no_single_sample_moves_an_estimate_far(velocities, other_velocities):
     for value in (velocities, other_velocities):
         after = np.append(sample.after[:3], value)
         # Only what the pose does not contradict gets as far as the filter.
-        bad = mut.Transition(sample.before, sample.control, sample.previous_control, after)
+        bad = mut.Transition(sample.before, sample.control, after)
         before, deviations = learner.coefficients(state), learner.deviations(state)
         state = learner.update(state, bad)
         assert (np.abs(learner.coefficients(state) - before) <= 3 * 2.6 * deviations).all()
@@ -161,7 +158,7 @@ def test_straight_driving_leaves_what_turning_taught():
         control = np.array([generator.uniform(0.5, 2.0), 0.0, 0.0])
         start = np.array([0.0, 0.0, 0.0, generator.uniform(0.5, 1.4), 0.0, 0.0])
         noise = NOISE * generator.standard_normal(6)
-        state = learner.update(state, mut.Transition(start, control, control, next_state(start, control) + noise))
+        state = learner.update(state, mut.Transition(start, control, next_state(start, control) + noise))
     untouched = [0, 1, 2, 5]
     assert learner.coefficients(state)[untouched] == pytest.approx(before[untouched], rel=1e-3)
     assert learner.deviations(state)[untouched] == pytest.approx(deviations[untouched], rel=1e-2)
@@ -176,7 +173,7 @@ def test_a_change_is_followed():
 
 def transition(**changes):
     (plain,) = log(1, noise=0 * NOISE)
-    values = {name: getattr(plain, name).copy() for name in ("before", "control", "previous_control", "after")}
+    values = {name: getattr(plain, name).copy() for name in ("before", "control", "after")}
     for name, entries in changes.items():
         for index, value in entries.items():
             values[name][index] = value
@@ -187,7 +184,6 @@ def transition(**changes):
     "changes",
     [
         {"control": {0: 0.0, 1: 2.0, 2: 0.0}},  # Parked.
-        {"previous_control": {0: 0.0, 1: 2.0, 2: 0.0}},
         {"before": {3: 0.1}, "after": {3: 0.1}},  # The end of braking.
         {"before": {0: np.nan}},
         {"after": {5: np.inf}},
@@ -205,15 +201,14 @@ def test_what_the_model_does_not_describe_is_left_out(changes):
 
 def test_a_sample_taken_a_plant_step_late_is_left_out():
     (plain,) = log(1, noise=0 * NOISE)
-    acting = 0.95 * plain.control + 0.05 * plain.previous_control
-    late = np.array(step_function(TICK + 0.01)(plain.before, acting, TRUTH)).ravel()
+    late = np.array(step_function(TICK + PLANT_STEP)(plain.before, plain.control, TRUTH)).ravel()
     learner = mut.DynamicsEstimator()
     assert learner.describes(plain)
-    assert not learner.describes(mut.Transition(plain.before, plain.control, plain.previous_control, late))
+    assert not learner.describes(mut.Transition(plain.before, plain.control, late))
 
 
 def test_slopes_are_those_of_the_models_step():
-    learner = mut.DynamicsEstimator(control_delay=0.0)
+    learner = mut.DynamicsEstimator()
     (sample,) = log(1)
     predicted, slopes = learner.prediction(sample, TRUTH)
     assert predicted == pytest.approx(next_state(sample.before, sample.control), abs=1e-12)
@@ -253,7 +248,6 @@ def test_a_state_survives_json_bit_for_bit():
         {"pose_noise": np.nan},
         {"least_speed": -0.1},
         {"least_excitation": -1.0},
-        {"control_delay": 1.0},
     ],
 )
 def test_settings_out_of_range_are_refused(settings):

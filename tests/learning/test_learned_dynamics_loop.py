@@ -41,17 +41,17 @@ class Log:
 
     states: list = field(default_factory=list)
     controls: list = field(default_factory=list)
-    pitch_rates: list = field(default_factory=list)  # rad/s, nose down, when the next state is sampled.
-    centre_heights: list = field(default_factory=list)  # Of the centre of mass, metres, at the same time.
-    truths: list = field(default_factory=list)  # c, propulsion gain, yaw gain; at the same time.
+    pitch_rates: list = field(default_factory=list)  # rad/s, nose down.
+    centre_heights: list = field(default_factory=list)  # Of the centre of mass, metres.
+    truths: list = field(default_factory=list)  # c, propulsion gain, yaw gain.
     path_errors: list = field(default_factory=list)  # Distance to the path, metres, and speed, m/s.
     record: object = None
     learned: object = None
 
     def transitions(self):
-        """Each with its number: `truths[number]` and the like are of its end, `[number - 1]` of its beginning."""
-        for k in range(1, len(self.states) - 1):
-            yield k, Transition(self.states[k], self.controls[k], self.controls[k - 1], self.states[k + 1])
+        """Each with its number: `truths[number]` and the like are of its beginning, `[number + 1]` of its end."""
+        for k in range(len(self.states) - 1):
+            yield k, Transition(self.states[k], self.controls[k], self.states[k + 1])
 
     def path_error(self, least_speed=0.0):
         distances = [distance for distance, speed in self.path_errors if speed > least_speed]
@@ -84,9 +84,11 @@ class Station:
         while not watch.finished and len(log.states) < limit:
             self._ticks += 1
             boxes.update()
+            simulator.AdvanceTo((self._ticks - 1) * TICK + 0.5 * PLANT_STEP)
+            self._look_at_robot(log)
             simulator.AdvanceTo(self._ticks * TICK)
             watch.look()
-            self._look(log)
+            self._look_at_control(log)
         log.record = watch.record(wall_seconds=0.0, cpu_seconds=0.0)
         self._states = learner_states_of(self.station, self._context)
         log.learned = self._states.get("dynamics_learner")
@@ -101,9 +103,9 @@ class Station:
         system, context = self._own(name)
         return system.GetOutputPort(port).Eval(context)
 
-    def _look(self, log):
+    def _look_at_robot(self, log):
+        """While it is as it has just been sampled."""
         log.states.append(self._read("state_estimator", "robot_state").copy())
-        log.controls.append(self._read("mpc_controller", "control").copy())
         plant, context = self._own("plant")
         base = plant.GetBodyByName("base")
         X_WB = base.EvalPoseInWorld(context)
@@ -114,6 +116,9 @@ class Station:
         inertia = inertia.ReExpress(X_WB.rotation())
         log.centre_heights.append(inertia.get_com()[2])
         log.truths.append(self._truth(inertia, float(np.dot(ahead, inertia.get_com()))))
+
+    def _look_at_control(self, log):
+        log.controls.append(self._read("mpc_controller", "control").copy())
         controller, context = self._own("mpc_controller")
         driving = controller._state(context)
         if driving.leg is not None and driving.leg.track is not None and not driving.report.finished:
@@ -162,7 +167,7 @@ def prediction_errors(log, coefficients):
         if learner.describes(transition):
             predicted, _ = learner.prediction(transition, coefficients)
             error = (transition.after - predicted)[StateIndex.FORWARD_VELOCITY :]
-            error[0] += log.centre_heights[k] * (log.pitch_rates[k] - log.pitch_rates[k - 1])
+            error[0] += log.centre_heights[k + 1] * (log.pitch_rates[k + 1] - log.pitch_rates[k])
             errors.append(error)
     return np.array(errors)
 
