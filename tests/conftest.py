@@ -5,11 +5,15 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 import yaml
 from hypothesis import settings
 from pydrake.systems.framework import System
+
+from mala_drake.scenario import Scenario
+from mala_drake.scenario_file import LoadScenario
 
 # A shared machine makes any deadline a coin toss, and a suite that others run must not find new examples each time.
 settings.register_profile("suite", deadline=None, derandomize=True, database=None)
@@ -42,3 +46,15 @@ def assert_port_box() -> Callable[[System], None]:
         ]
 
     return check
+
+
+@pytest.fixture
+def load_scenario(tmp_path: Path) -> Callable[[str], Scenario]:
+    """A callable that reads the scenario with this text; it comes from a file `mine.scenario.yaml` in `tmp_path`."""
+
+    def load(text: str) -> Scenario:
+        path = tmp_path / "mine.scenario.yaml"
+        path.write_text(text, encoding="utf-8")
+        return LoadScenario(path)
+
+    return load

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from mala_drake.experiments.experiment import MAIN, Changes
 from mala_drake.experiments.experiment_kind import ExperimentKind, Size
+from mala_drake.learning.make_learner import LEARNER_NAMES
 from mala_drake.patient.profiles import PROFILES
-from mala_drake.scenario import LEARNER_NAMES, Scenario
+from mala_drake.scenario import Scenario
 
 CONVERGENCE = ExperimentKind(
     name="convergence",
