@@ -12,7 +12,7 @@ import pytest
 import mala_drake
 from mala_drake.experiments.compute_episode import EpisodeWork
 from mala_drake.experiments.episode import Carried
-from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion
+from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, timing
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.randomness import keyed_generator
 from mala_drake.scenario import Scenario
@@ -50,7 +50,7 @@ def _episode_record(**changes) -> EpisodeRecord:
         "mismatches": 0,
         "battery_start": 1.0,
         "battery_end": 0.4,
-        "timing": {"wall_s": 1.0, "cpu_s": 0.5, "mpc_median_ms": 2.0},
+        "timing": timing(wall_seconds=1.0, cpu_seconds=0.5, mpc_seconds=[0.002], plan_seconds=[0.01]),
     }
     return EpisodeRecord(**{**values, **changes})
 

@@ -47,43 +47,6 @@ KEYS = [
 TIMING_KEYS = ["wall_s", "cpu_s", "mpc_median_ms", "mpc_p95_ms", "mpc_max_ms", "plan_median_ms", "plan_p95_ms"]
 
 
-def record(**changes):
-    values = {
-        "episode": 0,
-        "task": "medication",
-        "profile": "speed_oriented",
-        "seed": 0,
-        "success": True,
-        "failure": None,
-        "actions": ["(go robot1)"],
-        "plan_variant": "north/A/med-supp/left",
-        "plan_cost": 0.5,
-        "replans": 8,
-        "features": mut.by_criterion([0.1] * 5),
-        "predicted_features": mut.by_criterion([0.2] * 5),
-        "ratings": [4.0] * 5,
-        "weights_before": [0.2] * 5,
-        "weights_after": [0.2] * 5,
-        "weights_std": None,
-        "distance_to_true": 0.3,
-        "sim_time_s": 90.0,
-        "solver": "snopt",
-        "mpc_solves": 10,
-        "mpc_failures": 0,
-        "min_clearance_m": 0.2,
-        "collisions": 0,
-        "terminal_errors_m": [0.01],
-        "terminal_yaw_errors_rad": [0.02],
-        "terminal_speeds_m_s": [0.03],
-        "leg_outcomes": ["success"],
-        "mismatches": 0,
-        "battery_start": 1.0,
-        "battery_end": 0.4,
-        "timing": mut.timing(wall_seconds=1.0, cpu_seconds=0.5, mpc_seconds=[0.01], plan_seconds=[0.002]),
-    }
-    return mut.EpisodeRecord(**{**values, **changes})
-
-
 def refuse_constants(name):
     raise AssertionError(f"{name} is not JSON")
 
@@ -93,41 +56,41 @@ def strict(text):
     return json.loads(text, parse_constant=refuse_constants)
 
 
-def test_the_keys_are_the_agreed_ones_and_no_others():
-    written = strict(record().to_json())
+def test_the_keys_are_the_agreed_ones_and_no_others(episode_record):
+    written = strict(episode_record().to_json())
     assert sorted(written) == sorted(KEYS)
     assert list(written["timing"]) == TIMING_KEYS
     assert list(written["features"]) == ["time", "safety", "battery", "proximity", "approach"]
 
 
-def test_learned_dynamics_are_written_where_they_are_learned():
+def test_learned_dynamics_are_written_where_they_are_learned(episode_record):
     learned = {"yaw_coupling": [0.31, 0.01]}
-    written = strict(record(learned_dynamics=learned).to_json())
+    written = strict(episode_record(learned_dynamics=learned).to_json())
     assert sorted(written) == sorted([*KEYS, "learned_dynamics"])
     assert written["learned_dynamics"] == learned
 
 
-def test_executed_actions_are_written_before_the_timing():
+def test_executed_actions_are_written_before_the_timing(episode_record):
     entry = {"action": "(recharge robot1)", "outcome": "success", "external_reward": -0.1, "closed_loop_cost": None}
-    written = strict(record(executed_actions=[entry]).to_json())
+    written = strict(episode_record(executed_actions=[entry]).to_json())
     assert sorted(written) == sorted([*KEYS, "executed_actions"])
     assert written["executed_actions"] == [entry]
     assert list(written).index("executed_actions") == list(written).index("timing") - 1
 
 
-def test_legs_to_displaced_places_are_written_where_there_are_some():
+def test_legs_to_displaced_places_are_written_where_there_are_some(episode_record):
     leg = {"place": "pantry", "outcome": "success", "mismatch": 0.25, "moved": True, "x": -3.0}
-    written = strict(record(displaced_legs=[leg]).to_json())
+    written = strict(episode_record(displaced_legs=[leg]).to_json())
     assert sorted(written) == sorted([*KEYS, "displaced_legs"])
     assert written["displaced_legs"] == [leg]
 
 
-def test_a_record_is_one_line():
-    assert len(record(failure="no\nplan\u2028exists").to_json().split("\n")) == 1
+def test_a_record_is_one_line(episode_record):
+    assert len(episode_record(failure="no\nplan\u2028exists").to_json().split("\n")) == 1
 
 
-def test_numbers_that_json_lacks_become_null():
-    line = record(min_clearance_m=math.inf, plan_cost=math.nan, terminal_errors_m=[math.inf, 1.0]).to_json()
+def test_numbers_that_json_lacks_become_null(episode_record):
+    line = episode_record(min_clearance_m=math.inf, plan_cost=math.nan, terminal_errors_m=[math.inf, 1.0]).to_json()
     written = strict(line)
     assert written["min_clearance_m"] is None
     assert written["plan_cost"] is None
@@ -148,10 +111,10 @@ def test_rounding_loses_less_than_a_nanometre(value):
     assert mut.plain(value) == pytest.approx(value, abs=1e-9)
 
 
-def test_an_episode_is_rated_by_a_single_rating():
-    assert record().rated
-    assert record(ratings=[None, None, 3.0, None, None]).rated
-    assert not record(ratings=[None] * 5).rated
+def test_an_episode_is_rated_by_a_single_rating(episode_record):
+    assert episode_record().rated
+    assert episode_record(ratings=[None, None, 3.0, None, None]).rated
+    assert not episode_record(ratings=[None] * 5).rated
 
 
 def test_timing_is_in_milliseconds_and_nothing_without_solves():
@@ -198,10 +161,10 @@ def test_a_plan_variant_is_read_from_what_was_executed(actions, variant):
     assert mut.plan_variant(actions) == variant
 
 
-def test_each_record_is_on_the_disk_before_the_file_is_closed(tmp_path):
+def test_each_record_is_on_the_disk_before_the_file_is_closed(tmp_path, episode_record):
     file = mut.EpisodeFile(tmp_path / "new" / "folder")
     for episode in range(3):
-        file.append(record(episode=episode))
+        file.append(episode_record(episode=episode))
         lines = file.path.read_text(encoding="utf-8").splitlines()
         assert [strict(line)["episode"] for line in lines] == list(range(episode + 1))
     file.close()
