@@ -4,50 +4,36 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from pathlib import Path
-from types import TracebackType
+from collections.abc import Sequence
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, MofNCompleteColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.preferences import CRITERIA
+from mala_drake.reporting.progress_console import ProgressConsole
 from mala_drake.scenario import Scenario
 
 
-class RunConsole:
+class RunConsole(ProgressConsole):
     """Shows a run as it goes, on standard error, and its summary, on standard output."""
 
     def __init__(self, scenario: Scenario, *, quiet: bool) -> None:
         """Shows `scenario`; quiet leaves nothing but what the caller prints itself."""
         self._scenario = scenario
         self._last: EpisodeRecord | None = None
-        self._errors = Console(stderr=True, quiet=quiet)
-        self._output = Console(quiet=quiet)
-        self._progress = Progress(
+        super().__init__(
             SpinnerColumn(),
             BarColumn(bar_width=20),
             MofNCompleteColumn(),
             TimeElapsedColumn(),
             TextColumn("{task.description}", markup=False),
-            console=self._errors,
-            transient=True,
-            disable=not self._errors.is_terminal,  # In a file or a pipe, a line for each episode says enough.
+            quiet=quiet,
         )
         self._bar = self._progress.add_task("starting", total=scenario.episodes)
-
-    def __enter__(self) -> RunConsole:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self._progress.stop()
 
     def on_action(self, episode: int, seconds: float, text: str) -> None:
         """Shows what the robot does now."""
@@ -77,11 +63,6 @@ class RunConsole:
             self._output.print(f"Executed in episode {self._last.episode + 1}:", highlight=False)
             self._output.print("  " + " → ".join(map(_words, self._last.actions)), highlight=False, markup=False)
             self._output.print(weights_table(self._last, self._scenario.true_weights))
-
-    def show_files(self, paths: Iterable[Path]) -> None:
-        """Prints where the files of a run are."""
-        for path in paths:
-            self._output.print(f"wrote {path}", markup=False, highlight=False, soft_wrap=True)
 
 
 def _figures_table(title: str, totals: dict[str, Any], timing: dict[str, Any], figures: dict[str, Any]) -> Table:

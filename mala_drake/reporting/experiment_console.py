@@ -3,31 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.experiments.experiment import MAIN, RunName
 from mala_drake.learning.convergence import convergence_episode
+from mala_drake.reporting.progress_console import ProgressConsole
 
 _SPEED_WINDOW = 1800.0  # Seconds over which the speed is averaged that the time left is told from.
 
 
-class ExperimentConsole:
+class ExperimentConsole(ProgressConsole):
     """Shows an experiment as it goes, on standard error, and its summary, on standard output."""
 
     def __init__(self, *, quiet: bool) -> None:
         """Quiet leaves nothing but what the caller prints itself."""
-        self._errors = Console(stderr=True, quiet=quiet)
-        self._output = Console(quiet=quiet)
-        self._progress = Progress(
+        super().__init__(
             TextColumn("episodes"),
             BarColumn(bar_width=30),
             MofNCompleteColumn(),
@@ -35,21 +31,10 @@ class ExperimentConsole:
             TextColumn("elapsed,"),
             TimeRemainingColumn(),
             TextColumn("left"),
-            console=self._errors,
-            transient=True,
-            speed_estimate_period=_SPEED_WINDOW,
-            disable=not self._errors.is_terminal,  # In a file or a pipe, a line for each run says enough.
+            quiet=quiet,
+            speed_window=_SPEED_WINDOW,
         )
         self._bar = self._progress.add_task("", total=None)
-
-    def __enter__(self) -> ExperimentConsole:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self._progress.stop()
 
     def on_start(self, *, runs: int, episodes: int, done: int) -> None:
         """Says how much there is to do."""
@@ -95,11 +80,6 @@ class ExperimentConsole:
         self._output.print(table)
         for run, error in summary["unfinished"].items():
             self._output.print(Text(f"unfinished: {run} (failed in {error})", "red"), soft_wrap=True)
-
-    def show_files(self, paths: Sequence[Path]) -> None:
-        """Prints where the results are."""
-        for path in paths:
-            self._output.print(f"wrote {path}", markup=False, highlight=False, soft_wrap=True)
 
 
 def _cells(figures: dict[str, Any]) -> tuple[str, ...]:
