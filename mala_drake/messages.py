@@ -136,7 +136,7 @@ class ActionReport(Message):
 
 @dataclass(frozen=True, slots=True)
 class RobotState(Message):
-    """The estimated state of the MPC's model: metres, radians, body-frame velocities, and the time of the estimate."""
+    """The estimated state of the MPC's model: metres, radians, and body-frame velocities."""
 
     x: float = 0.0
     y: float = 0.0

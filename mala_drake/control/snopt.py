@@ -1,4 +1,4 @@
-"""SNOPT, the default solver: sequential quadratic programming with a quasi-Newton Hessian."""
+"""SNOPT, the reference: sequential quadratic programming with a quasi-Newton Hessian."""
 
 from __future__ import annotations
 

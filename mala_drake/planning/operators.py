@@ -30,11 +30,6 @@ class Condition:
     choices: tuple[tuple[Condition, ...], ...]
 
     @property
-    def is_conjunction_of_facts(self) -> bool:
-        """Whether the masks say it all."""
-        return not self.comparisons and not self.choices
-
-    @property
     def reads_numbers(self) -> bool:
         """Whether a comparison takes part."""
         return bool(self.comparisons) or any(part.reads_numbers for choice in self.choices for part in choice)

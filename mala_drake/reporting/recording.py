@@ -53,15 +53,14 @@ def _css(color: tuple[float, float, float]) -> str:
     return "#" + "".join(f"{round(255 * channel):02x}" for channel in color)
 
 
-def StartRecording(meshcat: Meshcat, *, frame_rate: float = FRAME_RATE) -> None:
+def StartRecording(meshcat: Meshcat) -> None:
     """Starts to record what visualizers publish; it is shown live all the same.
 
     Args:
         meshcat: the one that the diagram's `MeshcatVisualizer` publishes to.
-        frame_rate: frames a second of simulation.
     """
     meshcat.DeleteRecording()
-    meshcat.StartRecording(frames_per_second=frame_rate, set_visualizations_while_recording=True)
+    meshcat.StartRecording(frames_per_second=FRAME_RATE, set_visualizations_while_recording=True)
 
 
 def FinishRecording(

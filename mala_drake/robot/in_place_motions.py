@@ -50,6 +50,17 @@ def _work(*steps: tuple[float, Point]) -> tuple[Phase, ...]:
     return (*(Phase(until, Aim.GOAL, True, offset) for until, offset in steps), Phase(1.00, Aim.STOW, True))
 
 
+def _put(above: float, down: float, released: float, away: float) -> tuple[Phase, ...]:
+    """Boxes are brought above their goal, down to it and let go; the arm is raised from them and stowed."""
+    return (
+        Phase(above, Aim.HOVER, True),
+        Phase(down, Aim.GOAL, True),
+        Phase(released, Aim.GOAL, False),
+        Phase(away, Aim.HOVER, False),
+        Phase(1.00, Aim.STOW, False),
+    )
+
+
 _COLLECT = (
     Phase(0.38, Aim.HOVER, False),
     Phase(0.48, Aim.GOAL, False),
@@ -62,20 +73,8 @@ _SHOW = (Phase(0.55, Aim.CAMERA, True), Phase(1.00, Aim.STOW, True))
 MOTIONS: dict[Verb, tuple[Phase, ...]] = {
     Verb.COLLECT: _COLLECT,
     Verb.CHECK: _SHOW,
-    Verb.PUT_DOWN: (
-        Phase(0.54, Aim.HOVER, True),
-        Phase(0.74, Aim.GOAL, True),
-        Phase(0.80, Aim.GOAL, False),
-        Phase(0.98, Aim.HOVER, False),
-        Phase(1.00, Aim.STOW, False),
-    ),
-    Verb.DELIVER: (
-        Phase(0.14, Aim.HOVER, True),
-        Phase(0.22, Aim.GOAL, True),
-        Phase(0.30, Aim.GOAL, False),
-        Phase(0.36, Aim.HOVER, False),
-        Phase(1.00, Aim.STOW, False),
-    ),
+    Verb.PUT_DOWN: _put(0.54, 0.74, 0.80, 0.98),
+    Verb.DELIVER: _put(0.14, 0.22, 0.30, 0.36),
     Verb.RECHARGE: (Phase(1.00, Aim.STOW, False),),
     Verb.CHOOSE: (Phase(1.00, Aim.NOD, False),),
     Verb.COLLECT_INGREDIENT: _COLLECT,
@@ -102,13 +101,7 @@ MOTIONS: dict[Verb, tuple[Phase, ...]] = {
     Verb.CHECK_PALATABILITY: _SHOW,
     # Brought together on the plate, a little from each side.
     Verb.ASSEMBLE: _work((0.38, (0.0, 0.04, 0.04)), (0.48, (0.0, -0.04, 0.04)), (0.62, (0.0, 0.0, 0.12))),
-    Verb.SERVE: (
-        Phase(0.28, Aim.HOVER, True),
-        Phase(0.42, Aim.GOAL, True),
-        Phase(0.54, Aim.GOAL, False),
-        Phase(0.64, Aim.HOVER, False),
-        Phase(1.00, Aim.STOW, False),
-    ),
+    Verb.SERVE: _put(0.28, 0.42, 0.54, 0.64),
 }
 """The phases of each verb; the last one ends with the action."""
 

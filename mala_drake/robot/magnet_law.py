@@ -42,7 +42,7 @@ class MagnetLaw:
 
     reach: float = 0.03  # m.
     strength: float = 15.0  # N.
-    frequency: float = 25.0  # omega, rad/s; explicit, stable well beyond the plant's step.
+    frequency: float = 25.0  # omega, rad/s; explicit, stable for steps below (2 sqrt 2 - 2) / omega = 0.033 s.
     either_way_round: bool = True  # Whether half a turn about the vertical makes no difference.
 
     def wrench(self, box: Sequence[Any], place: Place) -> Wrench:
