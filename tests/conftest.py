@@ -1,4 +1,4 @@
-"""Fixtures shared by the whole suite (test modules never import each other)."""
+"""Fixtures shared by the whole suite (test modules import helpers that stand beside them, never each other)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from pydrake.systems.framework import System
 
 from mala_drake.scenario import Scenario
 from mala_drake.scenario_file import LoadScenario
+from mala_drake.ward.ward_map import LoadWard, Ward
 
 # A shared machine makes any deadline a coin toss, and a suite that others run must not find new examples each time.
 settings.register_profile("suite", deadline=None, derandomize=True, database=None)
@@ -46,6 +47,12 @@ def assert_port_box() -> Callable[[System], None]:
         ]
 
     return check
+
+
+@pytest.fixture(scope="session")
+def ward() -> Ward:
+    """The ward that comes with the package."""
+    return LoadWard()
 
 
 @pytest.fixture

@@ -3,7 +3,12 @@ from pathlib import Path
 
 import pytest
 
-from mala_drake.planning import PlanningTask
+from mala_drake.planning import Planner, PlanningTask
+from mala_drake.planning.task_planner import TaskPlanner
+from mala_drake.ward.ward_map import Ward
+
+from .plan_steps import care_domain
+from .planner_bench import PlannerBench
 
 DATA = Path(__file__).parent.parent / "data" / "pddl"
 
@@ -19,3 +24,26 @@ def load() -> Callable[[str], PlanningTask]:
         return tasks[name]
 
     return load_task
+
+
+@pytest.fixture(scope="module")
+def task(request: pytest.FixtureRequest) -> PlanningTask:
+    """The care domain that a module of tests is about, which it names in `DOMAIN`."""
+    return care_domain(request.module.DOMAIN)
+
+
+@pytest.fixture(scope="module")
+def planner(task: PlanningTask) -> Planner:
+    return Planner(task)
+
+
+@pytest.fixture(scope="session")
+def task_planner(ward: Ward) -> TaskPlanner:
+    """One system for all tests: its contexts are independent of each other."""
+    return TaskPlanner(ward)
+
+
+@pytest.fixture
+def bench(task_planner: TaskPlanner, ward: Ward) -> PlannerBench:
+    """A bench of its own for each test."""
+    return PlannerBench(task_planner, ward)

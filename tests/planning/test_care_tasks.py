@@ -13,14 +13,9 @@ from mala_drake.messages import Action, ActionKind, Atom, SymbolicState
 from mala_drake.planning import Planner
 from mala_drake.planning.leg_costs import LegCalibration, LegCosts
 from mala_drake.ward.items import all_items
-from mala_drake.ward.ward_map import LoadWard, Ward
+from mala_drake.ward.ward_map import Ward
 
 CHARGE = ("battery-soc", "robot1")
-
-
-@pytest.fixture(scope="module")
-def ward() -> Ward:
-    return LoadWard()
 
 
 @pytest.fixture(scope="module")
@@ -134,8 +129,10 @@ def test_a_leg_that_begins_in_transit_has_no_previous_place(ward: Ward, care: mu
     assert action.text == text
 
 
-def test_predicted_features_of_a_plan_sum_up_to_its_cost(care: mut.CareTask) -> None:
+@pytest.mark.parametrize("name", ["medication", "meal"])
+def test_predicted_features_of_a_plan_sum_up_to_its_cost(ward: Ward, name: str) -> None:
     """Metric = w' f + w0 f_time + 0.01 n, with f from `features` and the cost from the planner."""
+    care = mut.CareTask(name, ward)
     weights = (0.3, 0.1, 0.25, 0.15, 0.2)
     plan = Planner(care.planning_task).solve(weights=weights)
     state, total = care.planning_task.initial_state, [0.0] * 5

@@ -9,7 +9,7 @@ from mala_drake.errors import BadInput
 from mala_drake.planning import PlanningTask
 from mala_drake.planning.leg_costs import LegCosts
 from mala_drake.resources import domains_folder
-from mala_drake.ward.ward_map import LoadWard, Ward
+from mala_drake.ward.ward_map import Ward
 
 DOMAIN, PROBLEM = domains_folder() / "domain_med.pddl", domains_folder() / "problem_med.pddl"
 
@@ -20,11 +20,6 @@ LAST_DIGIT = {
     "nav-battery": 1e-4,
     "proximity-feature": 1e-3,
 }
-
-
-@pytest.fixture(scope="module")
-def ward() -> Ward:
-    return LoadWard()
 
 
 @pytest.fixture(scope="module")

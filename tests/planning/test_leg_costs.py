@@ -13,11 +13,6 @@ from mala_drake.ward.ward_map import LoadWard, Ward
 
 
 @pytest.fixture(scope="module")
-def ward() -> Ward:
-    return LoadWard()
-
-
-@pytest.fixture(scope="module")
 def costs(ward: Ward) -> mut.LegCosts:
     return mut.LegCosts(ward)
 

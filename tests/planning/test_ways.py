@@ -1,14 +1,7 @@
 import dataclasses
 
-import pytest
-
 import mala_drake.planning.ways as mut
-from mala_drake.ward.ward_map import LoadWard, Ward
-
-
-@pytest.fixture(scope="module")
-def ward() -> Ward:
-    return LoadWard()
+from mala_drake.ward.ward_map import Ward
 
 
 def names(ward: Ward, task: str) -> set[tuple[str, str]]:

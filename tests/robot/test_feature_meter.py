@@ -14,12 +14,6 @@ from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.drive_path import make_drive_path
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, FeatureRates, FeatureScales, approach_error
 from mala_drake.ward.legs import leg_planner
-from mala_drake.ward.ward_map import LoadWard
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 class Stage:

@@ -11,14 +11,8 @@ from mala_drake.robot.arm_kinematics import STOWED
 from mala_drake.robot.in_place_motions import HOVER_HEIGHT
 from mala_drake.robot.item_messages import HandedItem
 from mala_drake.ward.items import all_items
-from mala_drake.ward.ward_map import LoadWard
 
 MEDICINE = "pharmacy_north/med_antibiotic"
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 class Stage:

@@ -5,16 +5,10 @@ import pytest
 import mala_drake.robot.put_spots as mut
 from mala_drake.robot.gripper_geometry import landing_positions
 from mala_drake.ward.items import ItemPose, all_items, return_spots, table_spots
-from mala_drake.ward.ward_map import LoadWard
 
 AT_ORIGIN = (0.0, 0.0, 0.0)
 MIDDLE = ItemPose(0.7, 0.0, 0.83)
 LEFT = ItemPose(0.7, 0.3, 0.83)
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 def test_the_first_free_spot_is_taken():

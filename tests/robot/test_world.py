@@ -13,16 +13,10 @@ from mala_drake.robot.arm_kinematics import STOWED
 from mala_drake.robot.gripper_geometry import hanging_positions
 from mala_drake.robot.plant_state import PLANT_STATE_SIZE, QW, QZ, X, Y
 from mala_drake.ward.items import all_items
-from mala_drake.ward.ward_map import LoadWard
 
 BASE = (5.0, 18.0, math.pi / 2)
 HANGING = hanging_positions(BASE, STOWED)
 ANTIBIOTIC, VITAMIN = "pharmacy_north/med_antibiotic", "supply_A/supp_vitamin_d"
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 class Stage:

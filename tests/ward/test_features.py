@@ -7,14 +7,9 @@ from hypothesis import strategies as st
 
 import mala_drake.ward.features as mut
 from mala_drake.ward.congestion import RISK_LENGTH, Congestion, sample
-from mala_drake.ward.ward_map import Furniture, LoadWard, Ward
+from mala_drake.ward.ward_map import Furniture, Ward
 
 poses = st.tuples(st.floats(-25, 25), st.floats(-25, 25), st.floats(-7, 7))
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 @pytest.fixture(scope="module")

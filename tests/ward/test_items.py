@@ -8,14 +8,8 @@ import shapely
 import mala_drake.ward.items as mut
 from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.shapes import ShapeDistances, outline
-from mala_drake.ward.ward_map import LoadWard
 
 LEDGE_DEPTH = 0.28  # Metres from the face of the furniture to its upper part.
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 def footprint(pose):

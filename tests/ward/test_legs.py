@@ -17,11 +17,6 @@ CLEARANCE = 0.1  # Metres between the body and anything solid, on every leg.
 
 
 @pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
-
-
-@pytest.fixture(scope="module")
 def planner(ward):
     return mut.leg_planner(ward)
 

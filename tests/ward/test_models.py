@@ -19,12 +19,7 @@ from mala_drake.ward import models as mut
 from mala_drake.ward.furnishing.flat import lettering, obj_text
 from mala_drake.ward.furnishing.floor import floor_regions, floor_tiles
 from mala_drake.ward.furnishing.signs import sign_heights, sign_lines
-from mala_drake.ward.ward_map import Furniture, LoadWard, Zone
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
+from mala_drake.ward.ward_map import Furniture, Zone
 
 
 def triangles_of(text: str) -> np.ndarray:

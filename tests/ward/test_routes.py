@@ -9,7 +9,6 @@ import mala_drake.ward.routes as mut
 from mala_drake.messages import Shape
 from mala_drake.ward.congestion import sample
 from mala_drake.ward.shapes import ShapeDistances
-from mala_drake.ward.ward_map import LoadWard
 
 WIDE = mut.BODY_RADIUS + mut.ROUTE_CLEARANCE
 OUTLINE = 1.02  # By how much rounded corners of an outline may stand out beyond the margin.
@@ -25,11 +24,6 @@ def box_room():
         Shape("west", -8.0, 0.0, half_length=0.1, half_width=6.0),
         Shape("middle", 0.0, -1.0, half_length=0.1, half_width=3.0),
     )
-
-
-@pytest.fixture(scope="module")
-def ward():
-    return LoadWard()
 
 
 @pytest.fixture(scope="module")
