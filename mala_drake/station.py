@@ -174,9 +174,12 @@ class _StationBuilder:
     def add_physics(self) -> None:
         """Ward, robot, boxes and what stands about, in one discrete plant with contact."""
         self._plant, self._scene_graph = MakeCarePlant(self._builder)
-        AddWard(self._plant, self._true_ward, visible=self._meshcat is not None)
-        self._robot = AddCareRobot(self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth)
-        self._items = AddItems(self._plant, self._scene_graph, self._kept, self._robot)
+        visible = self._meshcat is not None
+        AddWard(self._plant, self._true_ward, visible=visible)
+        self._robot = AddCareRobot(
+            self._plant, self._scene_graph, hidden_truth=self._scenario.robot.hidden_truth, visible=visible
+        )
+        self._items = AddItems(self._plant, self._scene_graph, self._kept, self._robot, visible=visible)
         for shape, config in zip(self._scenario.unmapped_shapes, self._scenario.world.obstacles, strict=True):
             AddObstacle(self._plant, shape, height=config.height)
         home = next(place for place in self._ward.places if place.category == "home")

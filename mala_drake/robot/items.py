@@ -14,6 +14,7 @@ from pydrake.multibody.tree import RigidBody
 
 from mala_drake.resources import models_folder
 from mala_drake.robot.plant import CareRobot, MakeCareParser
+from mala_drake.robot.visuals import without_visuals
 from mala_drake.ward.items import Item, ItemPose
 
 ITEM_MASS = 0.2
@@ -52,7 +53,9 @@ class ItemBodies:
         return self.bodies[self.names.index(name)]
 
 
-def AddItems(plant: MultibodyPlant, scene_graph: SceneGraph, items: Sequence[Item], robot: CareRobot) -> ItemBodies:
+def AddItems(
+    plant: MultibodyPlant, scene_graph: SceneGraph, items: Sequence[Item], robot: CareRobot, *, visible: bool = True
+) -> ItemBodies:
     """Adds a free body for each item, by default on its shelf; each is a model instance of the item's name.
 
     Medicines (`med_...`) are cartons, supplements (`supp_...`) jars, everything else is a tray of food. The arm and the
@@ -63,8 +66,9 @@ def AddItems(plant: MultibodyPlant, scene_graph: SceneGraph, items: Sequence[Ite
         scene_graph: the plant's.
         items: at least the boxes the station knows; their names must be different.
         robot: whose arm is not to collide with them.
+        visible: whether they are also to be seen; a plant that nobody looks at steps faster without.
     """
-    bodies = tuple(_add_item(plant, item) for item in items)
+    bodies = tuple(_add_item(plant, item, visible) for item in items)
     filter_manager = scene_graph.collision_filter_manager()
     arm = [plant.GetBodyByName(name, robot.arm) for name in ("upper_arm", "forearm")]
     filter_manager.Apply(
@@ -78,10 +82,10 @@ def X_WI_at(pose: ItemPose) -> RigidTransform:
     return RigidTransform(RollPitchYaw(0.0, 0.0, pose.yaw), [pose.x, pose.y, pose.z])
 
 
-def _add_item(plant: MultibodyPlant, item: Item) -> RigidBody:
+def _add_item(plant: MultibodyPlant, item: Item, visible: bool) -> RigidBody:
     model = _MODELS.get(item.kind.partition("_")[0], "item_ingredient.sdf")
     text = _named_and_coloured(models_folder() / model, item)
-    (instance,) = MakeCareParser(plant).AddModelsFromString(text, "sdf")
+    (instance,) = MakeCareParser(plant).AddModelsFromString(text if visible else without_visuals(text), "sdf")
     body = plant.GetBodyByName("box", instance)
     plant.SetDefaultFloatingBaseBodyPose(body, X_WI_at(item.shelf_pose))
     return body

@@ -17,6 +17,7 @@ from mala_drake.clock import PLANT_STEP
 from mala_drake.resources import models_folder
 from mala_drake.robot.arm_kinematics import STOWED
 from mala_drake.robot.hidden_truth import with_hidden_truth
+from mala_drake.robot.visuals import without_visuals
 
 ARM_JOINTS = ("shoulder_yaw", "shoulder_pitch", "elbow_pitch")
 """The arm's joints, in the order of its positions."""
@@ -75,16 +76,19 @@ def AddFloor(plant: MultibodyPlant, *, size: float = 60.0) -> None:
     plant.RegisterCollisionGeometry(plant.world_body(), X_WF, slab, "floor", friction)
 
 
-def AddCareRobot(plant: MultibodyPlant, scene_graph: SceneGraph, *, hidden_truth: float = 0.0) -> CareRobot:
+def AddCareRobot(
+    plant: MultibodyPlant, scene_graph: SceneGraph, *, hidden_truth: float = 0.0, visible: bool = True
+) -> CareRobot:
     """Adds the care robot with its arm stowed, standing at the origin and looking along x.
 
     Args:
         plant: not finalized yet, discrete (the arm's joint controllers need it).
         scene_graph: the plant's.
         hidden_truth: scale of the errors of mass and wheel radii, 0 for the nominal model.
+        visible: whether it is also to be seen; a plant that nobody looks at steps faster without.
     """
-    text = (models_folder() / "care_robot.sdf").read_text()
-    (robot, arm) = MakeCareParser(plant).AddModelsFromString(with_hidden_truth(text, hidden_truth), "sdf")
+    text = with_hidden_truth((models_folder() / "care_robot.sdf").read_text(), hidden_truth)
+    (robot, arm) = MakeCareParser(plant).AddModelsFromString(text if visible else without_visuals(text), "sdf")
     for name, angle in zip(ARM_JOINTS, STOWED, strict=True):
         plant.GetJointByName(name, arm).set_default_angle(angle)
         stiffness, damping = ARM_GAINS[name]
