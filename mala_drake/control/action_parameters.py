@@ -47,6 +47,9 @@ AT_BEDSIDE = replace(CARRYING, position_weight=36.0 / 34.0, control_weight=1.18,
 """Facts of the case: near the patient Q_pos = 36 and R = (3.6, 3.6, 2.8), the working point's 3.05 times 1.18."""
 
 
+_NOMINAL_INPUTS = InputParameters()
+
+
 def style_of(action: Action, *, carrying: bool) -> DrivingStyle:
     """The driving style of an action."""
     if action.name.startswith("approach"):
@@ -77,7 +80,7 @@ def make_parameters(
     state_weights, control_weights = translate(weights)
     state_weights = state_weights * _position_factor(style.position_weight)
     model = dynamics or DynamicsParameters(propulsion_gain=style.propulsion_gain)
-    lower, upper = InputParameters().lower.copy(), InputParameters().upper.copy()
+    lower, upper = _NOMINAL_INPUTS.lower.copy(), _NOMINAL_INPUTS.upper.copy()
     lower[ControlIndex.PROPULSION], upper[ControlIndex.PROPULSION] = -style.propulsion_limit, style.propulsion_limit
     upper[ControlIndex.BRAKE] = style.brake_limit
     return MpcParameters(

@@ -156,14 +156,14 @@ class MpcController(LeafSystem):
         return context.get_abstract_state(self._driving).get_value()
 
     def _update(self, context: Context, state: State) -> None:
-        driving = self._state(context)
+        driving = before = self._state(context)
         action = self._action.Eval(context)
-        robot_state = np.array(self._robot_state.Eval(context))
         if action.sequence > driving.action.sequence:
             driving = self._accept(action, carrying=bool(self._magnet.Eval(context).held))
         if driving.report.sequence and not driving.report.finished:
-            driving = self._drive(context, driving, robot_state)
-        state.get_mutable_abstract_state(self._driving).set_value(driving)
+            driving = self._drive(context, driving, np.array(self._robot_state.Eval(context)))
+        if driving is not before:
+            state.get_mutable_abstract_state(self._driving).set_value(driving)
 
     def _accept(self, action: Action, *, carrying: bool) -> _Driving:
         style = style_of(action, carrying=carrying)

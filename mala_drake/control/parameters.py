@@ -6,6 +6,7 @@ values are immutable and validated, so that they can travel on abstract ports as
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -109,7 +110,16 @@ class DynamicsParameters(Message):
     @property
     def vector(self) -> Vector:
         """The coefficients as an array of shape (6,)."""
-        return np.array([getattr(self, f.name) for f in fields(self)], dtype=float)
+        return np.array(
+            (
+                self.lateral_damping,
+                self.lateral_coupling,
+                self.yaw_coupling,
+                self.propulsion_gain,
+                self.brake_gain,
+                self.yaw_gain,
+            )
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,15 +140,18 @@ class ConstraintParameters(_Arrays):
     def __post_init__(self) -> None:
         limits = self._freeze("speed_limits", (None,))
         _require("ConstraintParameters.speed_limits", (limits >= 0).all(), limits, "non-negative speeds")
-        for item in fields(self):
-            if item.name in ("speed_limits", "obstacles"):
-                continue
-            value = getattr(self, item.name)
-            good = np.isfinite(value) and value >= 0
-            _require(f"ConstraintParameters.{item.name}", good, value, "a finite non-negative number")
+        for name in _LIMITS_AND_PENALTIES:
+            value = getattr(self, name)
+            _require(f"ConstraintParameters.{name}", 0 <= value < math.inf, value, "a finite non-negative number")
         for s in self.obstacles:
-            finite = np.isfinite((s.x, s.y, s.yaw, s.half_length, s.half_width, s.radius)).all()
-            _require(f"obstacle {s.name!r}", finite, s, "finite sizes and places")
+            finite = all(map(math.isfinite, (s.x, s.y, s.yaw, s.half_length, s.half_width, s.radius)))
+            if not finite:
+                raise BadInput(f"obstacle {s.name!r}", str(s), "finite sizes and places")
+
+
+_LIMITS_AND_PENALTIES = tuple(
+    item.name for item in fields(ConstraintParameters) if item.name not in ("speed_limits", "obstacles")
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

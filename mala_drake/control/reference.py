@@ -8,7 +8,7 @@ runs away from the robot and never asks a differential drive to move sideways.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from mala_drake.messages import Message
 from mala_drake.ward.drive_path import ACCELERATION, DECELERATION, TURN_RATE, DrivePath
 
-from .model import STATE_SIZE, StateIndex
+from .model import StateIndex
+from .piecewise_linear import PiecewiseLinear
 
 _TURN_FIRST = 0.5  # Radians of heading error beyond which a moving start turns on the spot first.
 _ALIGNED = 0.12  # Radians within which such a turn is done.
@@ -50,20 +51,34 @@ class Track(Message):
     path: DrivePath
     target_yaw: float
     reverse: bool = False
+    _x: PiecewiseLinear = field(init=False, repr=False)
+    _y: PiecewiseLinear = field(init=False, repr=False)
+    _heading: PiecewiseLinear = field(init=False, repr=False)
+    _ceiling: PiecewiseLinear = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        path = self.path
+        columns = {"x": path.points[:, 0], "y": path.points[:, 1], "heading": path.headings, "ceiling": path.ceilings}
+        for name, values in columns.items():
+            object.__setattr__(self, f"_{name}", PiecewiseLinear(path.lengths, values))
 
     @property
     def goal(self) -> tuple[float, float]:
         """The path's end, metres."""
         return float(self.path.points[-1, 0]), float(self.path.points[-1, 1])
 
+    def position(self, length: float) -> tuple[float, float]:
+        """The point of the path at arc length `length`, metres."""
+        return self._x(length), self._y(length)
+
     def heading(self, length: float) -> float:
         """The robot's yaw wanted at arc length `length`."""
-        heading = float(np.interp(length, self.path.lengths, self.path.headings))
+        heading = self._heading(length)
         return heading + math.pi if self.reverse else heading
 
     def ceiling(self, length: float) -> float:
         """The speed wanted at most at arc length `length`, metres per second, not negative."""
-        speed = _MARGIN * float(np.interp(length, self.path.lengths, self.path.ceilings))
+        speed = _MARGIN * self._ceiling(length)
         return min(speed, _REVERSE_SPEED) if self.reverse else speed
 
     def progress(self, position: NDArray[np.float64], previous: float) -> tuple[float, float]:
@@ -89,59 +104,57 @@ def make_reference(
         horizon: number of stages N.
         period: seconds a stage.
     """
-    states = np.zeros((horizon + 1, STATE_SIZE))
     virtual = _Virtual(track, state, length, turning)
-    for row in states:
-        row[StateIndex.X], row[StateIndex.Y] = virtual.position()
-        row[StateIndex.YAW] = virtual.yaw
-        row[StateIndex.FORWARD_VELOCITY] = -virtual.speed if track.reverse else virtual.speed
-        row[StateIndex.YAW_RATE] = virtual.yaw_rate
+    rows = [virtual.state()]
+    for _ in range(horizon):
         virtual.advance(period)
+        rows.append(virtual.state())
+    states = np.array(rows)
     states[1:, StateIndex.YAW_RATE] = np.diff(states[:, StateIndex.YAW]) / period
     return Reference(states)
 
 
 def needs_turn(track: Track, yaw: float, length: float, *, turning: bool) -> bool:
     """Whether the robot looks so far away from the path that it turns on the spot, with hysteresis."""
-    if length >= track.path.length:
+    end = track.path.length
+    if length >= end:
         return False
     error = abs(math.remainder(track.heading(length) - yaw, math.tau))
     # On a short way back to the target a small angle already misses it.
-    wide = _TURN_FIRST if track.path.length > 1.0 else 2 * _ALIGNED
+    wide = _TURN_FIRST if end > 1.0 else 2 * _ALIGNED
     return error > (_ALIGNED if turning else wide)
 
 
 class _Virtual:
     def __init__(self, track: Track, state: NDArray[np.float64], length: float, turning: bool) -> None:
         self._track = track
+        self._end = track.path.length
         self._length = length
         self._turning = turning
         forward = float(state[StateIndex.FORWARD_VELOCITY])
-        self.yaw = float(state[StateIndex.YAW])
-        self.speed = max(0.0, -forward if track.reverse else forward)
-        self.yaw_rate = float(state[StateIndex.YAW_RATE])
+        self._yaw = float(state[StateIndex.YAW])
+        self._speed = max(0.0, -forward if track.reverse else forward)
+        self._yaw_rate = float(state[StateIndex.YAW_RATE])
 
-    def position(self) -> tuple[float, float]:
-        path = self._track.path
-        return (
-            float(np.interp(self._length, path.lengths, path.points[:, 0])),
-            float(np.interp(self._length, path.lengths, path.points[:, 1])),
-        )
+    def state(self) -> tuple[float, float, float, float, float, float]:
+        """Its state z, with the yaw rate that the robot begins with."""
+        speed = -self._speed if self._track.reverse else self._speed
+        return *self._track.position(self._length), self._yaw, speed, 0.0, self._yaw_rate
 
     def advance(self, period: float) -> None:
-        self._turning = needs_turn(self._track, self.yaw, self._length, turning=self._turning)
-        at_end = self._length >= self._track.path.length - 1e-6
+        self._turning = needs_turn(self._track, self._yaw, self._length, turning=self._turning)
+        at_end = self._length >= self._end - 1e-6
         ceiling = 0.0 if self._turning or at_end else self._ceiling_ahead(period)
-        slowest, fastest = self.speed - DECELERATION * period, self.speed + ACCELERATION * period
+        slowest, fastest = self._speed - DECELERATION * period, self._speed + ACCELERATION * period
         speed = max(0.0, min(max(ceiling, slowest), fastest))
-        self._length = min(self._length + 0.5 * (self.speed + speed) * period, self._track.path.length)
-        self.speed = speed
+        self._length = min(self._length + 0.5 * (self._speed + speed) * period, self._end)
+        self._speed = speed
         wanted = self._track.target_yaw if at_end else self._track.heading(self._length)
         step = TURN_RATE * period if self._turning or at_end else 2 * TURN_RATE * period
-        error = math.remainder(wanted - self.yaw, math.tau)
-        self.yaw += max(-step, min(step, error))
+        error = math.remainder(wanted - self._yaw, math.tau)
+        self._yaw += max(-step, min(step, error))
 
     def _ceiling_ahead(self, period: float) -> float:
         """The ceiling where this stage ends; just ahead at standstill, so that a path is also begun and finished."""
-        ahead = self._length + max(self.speed * period, 0.02)
-        return max(self._track.ceiling(ahead), min(0.1, (self._track.path.length - self._length) / period))
+        ahead = self._length + max(self._speed * period, 0.02)
+        return max(self._track.ceiling(ahead), min(0.1, (self._end - self._length) / period))
