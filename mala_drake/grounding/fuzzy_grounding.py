@@ -99,14 +99,22 @@ class FuzzyGrounding(LeafSystem):
             "symbolic_state", lambda: Value(SymbolicState()), self._calc_symbolic_state, prerequisites_of_calc=inputs
         )
         self.DeclareAbstractOutputPort(
-            "place_mismatch", lambda: Value(PlaceMismatch()), self._calc_place_mismatch, prerequisites_of_calc=inputs
+            "place_mismatch",
+            lambda: Value(PlaceMismatch()),
+            self._calc_place_mismatch,
+            # Who asks for it every tick is not to have the world's facts worked out as often.
+            prerequisites_of_calc={self._robot_state.ticket(), self._action.ticket()},
         )
 
-    def _observe(self, context: Context) -> Observation:
+    def _estimate(self, context: Context) -> RobotState | None:
+        """The robot's state, None where it is not finite."""
         estimate = self._robot_state.Eval(context).tolist()
+        return RobotState(*estimate) if all(map(math.isfinite, estimate)) else None
+
+    def _observe(self, context: Context) -> Observation:
         charge = float(self._charge.Eval(context)[0])
         return Observation(
-            robot_state=RobotState(*estimate) if all(map(math.isfinite, estimate)) else None,
+            robot_state=self._estimate(context),
             charge=min(max(charge, 0.0), 1.0) if math.isfinite(charge) else 0.0,
             world_facts=self._world_facts.Eval(context),
             action=self._action.Eval(context),
@@ -141,8 +149,7 @@ class FuzzyGrounding(LeafSystem):
         output.set_value(SymbolicState(tuple(sorted(atoms)), place, observation.charge))
 
     def _calc_place_mismatch(self, context: Context, output: Value) -> None:
-        observation = self._observe(context)
-        place, robot_state = observation.action.place, observation.robot_state
+        place, robot_state = self._action.Eval(context).place, self._estimate(context)
         if robot_state is None or place not in self._grounding.places:
             output.set_value(PlaceMismatch())
             return

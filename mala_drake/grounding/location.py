@@ -38,7 +38,8 @@ class LocationMembership:
 
     def distance(self, position: npt.ArrayLike) -> FloatArray:
         """The distance from the centre, (...), metres."""
-        return np.asarray(np.linalg.norm(np.asarray(position, dtype=float) - self.centre, axis=-1))
+        offset = np.asarray(position, dtype=float) - self.centre
+        return np.asarray(np.sqrt((offset * offset).sum(axis=-1)))
 
     def value(self, position: npt.ArrayLike) -> FloatArray:
         """The membership, (...)."""
@@ -47,7 +48,7 @@ class LocationMembership:
     def gradient(self, position: npt.ArrayLike) -> FloatArray:
         """The derivative with respect to the position."""
         offset = np.asarray(position, dtype=float) - self.centre
-        distance = np.linalg.norm(offset, axis=-1, keepdims=True)
+        distance = np.sqrt((offset * offset).sum(axis=-1, keepdims=True))
         direction = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0.0)
         return self.profile.derivative(distance) * direction
 

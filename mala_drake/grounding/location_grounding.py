@@ -43,7 +43,8 @@ class LocationGrounding:
         self.places = tuple(sorted(locations))
         self.membership = membership
         self._argmax = ArgmaxThreshold(threshold)
-        self._centres = np.array([LocationMembership(locations[name]).centre for name in self.places]).reshape(-1, 2)
+        self._locations = {name: LocationMembership(locations[name], membership) for name in self.places}
+        self._centres = np.array([location.centre for location in self._locations.values()]).reshape(-1, 2)
 
     def values(self, position: npt.ArrayLike) -> FloatArray:
         """The membership of each of `places` at the position (2,), metres: (L,)."""
@@ -52,8 +53,7 @@ class LocationGrounding:
 
     def location(self, place: str) -> LocationMembership:
         """The membership of one place, with its gradients."""
-        x, y = self._centres[self.places.index(place)]
-        return LocationMembership((float(x), float(y)), self.membership)
+        return self._locations[place]
 
     def place(self, values: npt.ArrayLike, *, expected: str = IN_TRANSIT) -> str:
         """The place l_fuzzy, or IN_TRANSIT when the highest membership is below the threshold.

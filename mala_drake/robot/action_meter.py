@@ -129,11 +129,13 @@ class ActionMeter(LeafSystem):
 
     def _ended(self, context: Context, state: _Evaluating) -> _Evaluating:
         """With the evaluation of the action that was under way, if the feature meter says what it took."""
-        features: ActionFeatures = self._action_features.Eval(context)
-        sequence = features.action.sequence
-        if sequence != state.action.sequence or sequence <= state.ended.action.sequence:
-            return state
+        sequence = state.action.sequence
         report: TaskReport = self._task_report.Eval(context)
+        if report.last_action.sequence != sequence or sequence <= state.ended.action.sequence:
+            return state
+        features: ActionFeatures = self._action_features.Eval(context)
+        if features.action.sequence != sequence:
+            return state
         weights = np.array(state.weights)
         cost = float(weights @ self._scaled(self._task.Eval(context).name, features, state.approach_error))
         elsewhere = any(atom[0] != "at" for atom in report.last_differing)
@@ -159,19 +161,24 @@ class ActionMeter(LeafSystem):
         mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
         leg: ActionReport = self._leg_report.Eval(context)
         is_leg = leg.sequence == action.sequence
-        return replace(
-            state,
-            # Where the robot's place is not known it is not the expected one.
-            place_error=mismatch.error if mismatch.place == action.place else 1.0,
-            closed_loop_cost=leg.closed_loop_cost if is_leg else None,
-            approach_error=self._approach_error(context, action),
-        )
+        # Where the robot's place is not known it is not the expected one.
+        place_error = mismatch.error if mismatch.place == action.place else 1.0
+        closed_loop_cost = leg.closed_loop_cost if is_leg else None
+        approach = self._approach_error(context, action)
+        if (place_error, closed_loop_cost, approach) == (
+            state.place_error,
+            state.closed_loop_cost,
+            state.approach_error,
+        ):
+            return state
+        return replace(state, place_error=place_error, closed_loop_cost=closed_loop_cost, approach_error=approach)
 
     def _approach_error(self, context: Context, action: Action) -> float:
         """That of the pose which a leg to a bedside has come to; 0 of any other action."""
+        if action.kind is not ActionKind.MOVE or action.place not in self._bedsides:
+            return 0.0
         x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
-        approaching = action.kind is ActionKind.MOVE and action.place in self._bedsides
-        return approach_error((x, y, yaw), self._ideal) if approaching and math.isfinite(x + y + yaw) else 0.0
+        return approach_error((x, y, yaw), self._ideal) if math.isfinite(x + y + yaw) else 0.0
 
     def _scaled(self, task: str, features: ActionFeatures, approach: float) -> NDArray[np.float64]:
         work = in_place_action(features.action.name, features.action.arguments)
