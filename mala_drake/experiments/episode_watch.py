@@ -37,6 +37,7 @@ class EpisodeWatch:
         """Begins to watch the episode (counted from 0) that `context` is set up for."""
         self._station = station
         self._context = context
+        self._ports: dict[tuple[str, str], tuple[Any, Context]] = {}  # Those read so far, with their contexts.
         self._scenario = scenario
         self._episode = episode
         self._started = context.get_time()
@@ -53,8 +54,11 @@ class EpisodeWatch:
         self._charge_before = self._charge()
 
     def _read(self, system: str, port: str) -> Any:
-        subsystem = self._station.GetSubsystemByName(system)
-        return subsystem.GetOutputPort(port).Eval(subsystem.GetMyContextFromRoot(self._context))
+        if (system, port) not in self._ports:
+            subsystem = self._station.GetSubsystemByName(system)
+            self._ports[system, port] = subsystem.GetOutputPort(port), subsystem.GetMyContextFromRoot(self._context)
+        output, context = self._ports[system, port]
+        return output.Eval(context)
 
     def _learned_targets(self) -> LearnedTargets:
         if not self._station.HasSubsystemNamed("target_learner"):

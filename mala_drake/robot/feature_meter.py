@@ -170,8 +170,8 @@ class FeatureMeter(LeafSystem):
 
     def _integrate(self, context: Context, sums: Any) -> None:
         elapsed = context.get_time() - sums.begun - sums.duration
-        x, y, yaw = self._robot_state.Eval(context)[:3]
-        charge = self._charge.Eval(context)[0]
+        x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
+        charge = self._charge.Eval(context).item()
         sums.duration += elapsed
         if math.isfinite(charge):
             sums.charge_used += max(0.0, sums.charge - charge)

@@ -34,7 +34,7 @@ class _Clamps:
     places: tuple[Place, ...]
     forces: tuple[slice, ...]  # Where in the generalized forces theirs are.
     state_indices: NDArray[np.intp]  # (13 k,) into the plant's state: pose, then velocity of each box.
-    weights: NDArray[np.intp]  # (k,) into the generalized forces: what pulls each box up.
+    carrying: NDArray[np.float64]  # The generalized forces that carry the weights and do nothing else.
     resting: NDArray[np.float64]  # (13 k,): where they belong, at rest.
 
 
@@ -111,11 +111,10 @@ class Magnet(LeafSystem):
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
         state = self._state_port.Eval(context)
-        generalized = np.zeros(self._num_velocities)
+        generalized = output.get_mutable_value()
         self._hold_clamped(state, self._clamps_of(self._clamped_port.Eval(context)), generalized)
         for item, pad in self._magnet_port.Eval(context).held:
             self._hold_at_pad(state, item, pad, generalized)
-        output.SetFromVector(generalized)
 
     def _clamps_of(self, message: ClampedItems) -> _Clamps:
         """The message as arrays: kept from step to step, since it changes only when a box is taken or brought back."""
@@ -129,29 +128,31 @@ class Magnet(LeafSystem):
         for row, (_, pose) in zip(resting, message.items, strict=True):
             # The sign of the quaternion is that of the plant's default pose, or a box at rest would never seem to be.
             row[:7] = *X_WI_at(pose).rotation().ToQuaternion().wxyz(), pose.x, pose.y, pose.z
+        carrying = np.zeros(self._num_velocities)
+        carrying[[box.force[-1] for box in boxes]] = ITEM_MASS * GRAVITY
         return _Clamps(
             places=tuple(Place((pose.x, pose.y, pose.z), pose.yaw) for _, pose in message.items),
             forces=tuple(slice(box.force.start, box.force.stop) for box in boxes),
             state_indices=np.array([index for box in boxes for index in box.state], dtype=np.intp),
-            weights=np.array([box.force[-1] for box in boxes], dtype=np.intp),
+            carrying=carrying,
             resting=resting.ravel(),
         )
 
     def _hold_clamped(self, state: NDArray[np.float64], clamps: _Clamps, generalized: NDArray[np.float64]) -> None:
-        generalized[clamps.weights] = ITEM_MASS * GRAVITY
-        deviations = state[clamps.state_indices] - clamps.resting
+        generalized[:] = clamps.carrying
+        boxes = state.take(clamps.state_indices)
+        deviations = boxes - clamps.resting
         if deviations.dot(deviations) < _AT_REST**2:
             return  # As nearly always: every box stands still in its place and only its weight has to be carried.
         astray = ~(np.abs(deviations).reshape(-1, _BODY_STATE).max(axis=1) < _AT_REST)  # Also where it is NaN.
-        boxes = state[clamps.state_indices].reshape(-1, _BODY_STATE)
         for row in np.flatnonzero(astray):
-            torque, force = self._clamp.wrench(boxes[row].tolist(), clamps.places[row])
+            torque, force = self._clamp.wrench(boxes.reshape(-1, _BODY_STATE)[row].tolist(), clamps.places[row])
             generalized[clamps.forces[row]] = (*torque, *force)
 
     def _hold_at_pad(self, state: NDArray[np.float64], item: str, pad: int, generalized: NDArray[np.float64]) -> None:
         self._item(item)
         at_pad = self._pads[pad]
-        at_pad.arguments[0][:, 0] = state[self._arguments[item]]
+        at_pad.arguments[0][:, 0] = state.take(self._arguments[item])
         at_pad()
         generalized[self._results[item]] += at_pad.results[0][:, 0]
 

@@ -98,7 +98,8 @@ class SleepingBoxes:
         loose = self._loose | ~still
         places = state[self._places]
         disturbed = ~_far(places, state[self._robot][None, :], WAKING_DISTANCE)
-        disturbed |= ~_far(places, places[loose], DISTURBING_DISTANCE)
+        if loose.any():
+            disturbed |= ~_far(places, places[loose], DISTURBING_DISTANCE)
         if np.array_equal(disturbed, ~self._asleep):
             return
         for index in np.flatnonzero(disturbed & self._asleep):

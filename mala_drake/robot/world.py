@@ -159,15 +159,16 @@ class World(LeafSystem):
         before = self._current(context)
         task, action = self._task.Eval(context), self._action.Eval(context)
         magnet, report = self._magnet.Eval(context), self._report.Eval(context)
-        positions = self._item_positions(context)
         world = before
         if task.sequence > world.task.sequence:
             world = begin_task(world, task, self._mistakes)
         base = self._base_pose(context)
-        world = follow_magnet(world, magnet, positions, self._hanging(context, base))
+        if magnet.held or any(world.boxes):
+            world = follow_magnet(world, magnet, self._item_positions(context), self._hanging(context, base))
         world = self._follow_base(world, base)
         outcome = _outcome(world, action, report)
         if outcome is not Outcome.RUNNING:
+            positions = self._item_positions(context)
             on_table = [self._is_on_table(positions, item, world.action.place) for item in world.taken_along]
             world = conclude(world, outcome, self._item_by_name, self._requested, on_table=on_table)
             world = take_back(world, self._items, magnet, positions)

@@ -6,6 +6,7 @@ congestion level over the path, so that prediction and measurement mean one thin
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -57,11 +58,21 @@ class Congestion:
 def sample(points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Cuts a polyline into short pieces: their middles, shape (m, 2), and lengths, shape (m,), in metres."""
     corners = np.asarray(points, dtype=float)
+    if len(corners) == 2:
+        return _sample_line(*corners)
     middles, lengths = [np.empty((0, 2))], [np.empty(0)]
-    for a, b in pairwise(corners):
-        length = float(np.hypot(*(b - a)))
-        count = max(1, int(np.ceil(length / _SAMPLE)))
-        fractions = (np.arange(count) + 0.5) / count
-        middles.append(a + fractions[:, None] * (b - a))
-        lengths.append(np.full(count, length / count))
+    for start, end in pairwise(corners):
+        of_line = _sample_line(start, end)
+        middles.append(of_line[0])
+        lengths.append(of_line[1])
     return np.concatenate(middles), np.concatenate(lengths)
+
+
+def _sample_line(
+    start: NDArray[np.float64], end: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    step = end - start
+    length = float(np.hypot(step[0], step[1]))
+    count = max(1, math.ceil(length / _SAMPLE))
+    fractions = (np.arange(count) + 0.5) / count
+    return start + fractions[:, None] * step, np.full(count, length / count)

@@ -159,13 +159,14 @@ _WITH_DISH = {
     "assemble": Verb.ASSEMBLE,
 }
 
+_INGREDIENT_SLOTS = {kind: slot for dish in DISHES.values() for slot, kind in enumerate(dish.ingredients)}
+
 _DELIVER = ("deliver_on_bedside_table_left", "deliver_on_bedside_table_right")
 
 
 def ingredient_slot(kind: str) -> int | None:
     """The gripper pad of an ingredient, the same in every dish; None for what is no ingredient."""
-    slots = {kind: slot for dish in DISHES.values() for slot, kind in enumerate(dish.ingredients)}
-    return slots.get(kind)
+    return _INGREDIENT_SLOTS.get(kind)
 
 
 def in_place_action(name: str, arguments: Sequence[str] = ()) -> InPlaceAction | None:
