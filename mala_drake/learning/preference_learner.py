@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
+from pydrake.systems.framework import Context, DiscreteValues
 
 from mala_drake.clock import LEARN_OFFSET, TICK
 from mala_drake.errors import BadInput
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray
+from mala_drake.learning.learner_system import LearnerSystem
 from mala_drake.messages import Preferences, Ratings
 from mala_drake.randomness import keyed_generator
 
 _NAME = "preference_learner"
 
 
-class PreferenceLearner(LeafSystem):
+class PreferenceLearner(LearnerSystem):
     """Learns the patient's preference weights, once from the ratings of each episode.
 
     .. pydrake_system::
@@ -60,19 +61,8 @@ class PreferenceLearner(LeafSystem):
         # What was computed last, and from which state: a pure function's memory, not state.
         self._newest: tuple[bytes, Preferences] = (b"", Preferences())
         self._ratings = self.DeclareAbstractInputPort("ratings", Value(Ratings()))
-        index = self.DeclareDiscreteState(np.append(state, 0.0))
-        self.DeclareAbstractOutputPort(
-            "preferences",
-            lambda: Value(Preferences()),
-            self._calc_preferences,
-            prerequisites_of_calc={self.discrete_state_ticket(index)},
-        )
+        self._declare_learned("preferences", Preferences(), initial_state=state, marks=1)
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
-
-    def learner_state(self, context: Context) -> FloatArray:
-        """The learner's state in `context`, for a checkpoint: `learner.save(system.learner_state(context))`."""
-        vector: FloatArray = context.get_discrete_state_vector().value()
-        return vector[:-1].copy()
 
     def set_learner_state(self, context: Context, state: FloatArray, *, episode: int) -> None:
         """Puts what was learned before into `context`, in which `episode` is the next one.
@@ -91,14 +81,14 @@ class PreferenceLearner(LeafSystem):
 
     def seen(self, context: Context) -> int:
         """Sequence number of the last ratings taken in, 0 before the first."""
-        return int(context.get_discrete_state_vector().value()[-1])
+        return int(self._marks(context).item())
 
-    def _calc_preferences(self, context: Context, output: Value) -> None:
+    def _learned(self, context: Context) -> Preferences:
         # The update leaves the state as it is at nearly every tick, but the port is asked anew after each.
         key = context.get_discrete_state_vector().value().tobytes()
         if key != self._newest[0]:
             self._newest = (key, self._preferences(context))
-        output.set_value(self._newest[1])
+        return self._newest[1]
 
     def _preferences(self, context: Context) -> Preferences:
         state = self.learner_state(context)
