@@ -9,8 +9,10 @@ import pytest
 
 from mala_drake.control import (
     ConstraintParameters,
+    MakeSolver,
     MpcParameters,
     OptimalControlProblem,
+    Solver,
     StageParameters,
     TerminalParameters,
 )
@@ -20,6 +22,16 @@ from mala_drake.control import (
 def problem() -> OptimalControlProblem:
     """The problem of the hospital case: it is immutable, so all tests share one."""
     return OptimalControlProblem()
+
+
+@pytest.fixture(scope="session")
+def snopt(problem: OptimalControlProblem) -> Solver:
+    return MakeSolver("snopt", problem)
+
+
+@pytest.fixture(scope="session")
+def rti(problem: OptimalControlProblem) -> Solver:
+    return MakeSolver("rti", problem)
 
 
 @pytest.fixture(scope="session")

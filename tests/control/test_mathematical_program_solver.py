@@ -1,4 +1,4 @@
-"""All solvers: optimality, multipliers, parameter groups, warm starts, closed loops and faults."""
+"""SNOPT and IPOPT: multipliers, parameter groups, closed loops and faults."""
 
 import dataclasses
 
@@ -6,25 +6,9 @@ import numpy as np
 import pytest
 
 from mala_drake.control import DynamicsParameters, InputParameters, MakeSolver, Status
-from mala_drake.messages import Shape
 from mala_drake.ward.shapes import ShapeDistances
 
-BOX = Shape("box", 1.5, 0.25, 0.3, 0.3, 0.2, 0.05)
-START = np.array([0.0, 0.0, 0.1, 0.4, 0.0, 0.0])
-
-
-@pytest.fixture(scope="module")
-def snopt(problem):
-    return MakeSolver("snopt", problem)
-
-
-@pytest.fixture(scope="module", params=["snopt", "ipopt", "rti"])
-def solver(request, problem):
-    return MakeSolver(request.param, problem)
-
-
-def gradient(problem, solution, state, parameters):
-    return problem.cost_and_gradient(solution.controls.T, state, problem.pack(state, parameters))[1].full().T
+from .cases import BOX, START, random_case
 
 
 def drive(problem, solver, state, parameters, *, steps, noise=0.0, seed=0):
@@ -36,23 +20,6 @@ def drive(problem, solver, state, parameters, *, steps, noise=0.0, seed=0):
         ahead = problem.step(states[-1], solution.controls[0], parameters.dynamics.vector).full()[:, 0]
         states.append(ahead + noise * generator.standard_normal(6) * (1, 1, 1, 1, 0, 1))
     return np.array(states)
-
-
-def test_the_kkt_conditions_hold_at_the_solution(problem, solver, parameters_toward):
-    parameters = parameters_toward((3.0, 0.3), obstacles=(BOX,))
-    solution = solver.solve(START, parameters)
-    assert solution.status is Status.SOLVED
-    assert solution.optimality < 1e-3
-    # Stationarity: the gradient is the multiplier of the box, up to the tolerance in units of the terminal weight.
-    slope = gradient(problem, solution, START, parameters)
-    np.testing.assert_allclose(slope, solution.control_duals, atol=5.0)
-    lower, upper = parameters.inputs.lower, parameters.inputs.upper
-    assert (solution.controls >= lower).all()
-    assert (solution.controls <= upper).all()
-    inside = (solution.controls > lower + 0.02) & (solution.controls < upper - 0.02)
-    assert np.abs(solution.control_duals[inside]).max() < 5.0
-    assert (solution.control_duals[solution.controls < lower + 1e-6] > -5.0).all()
-    assert (solution.control_duals[solution.controls > upper - 1e-6] < 5.0).all()
 
 
 def test_the_dual_of_a_bound_is_the_derivative_of_the_optimal_cost(problem, parameters_toward):
@@ -100,32 +67,6 @@ def test_each_of_the_five_groups_changes_the_solution(snopt, parameters_toward, 
     assert np.abs(first.states - second.states).max() > 0.05
     # Nothing of the second action is left in the program.
     np.testing.assert_allclose(snopt.solve(START, one).controls, first.controls, atol=1e-6)
-
-
-def test_a_shifted_warm_start_saves_evaluations_at_equal_cost(problem, snopt, parameters_toward):
-    parameters = parameters_toward((3.0, 0.3))  # Nothing in the way: with obstacles the optimum need not be the same.
-    state, warm_start, cold_evaluations, warm_evaluations = START, None, 0, 0
-    for _ in range(8):
-        warm = snopt.solve(state, parameters, warm_start)
-        if warm_start is not None:
-            cold = snopt.solve(state, parameters)
-            assert warm.cost == pytest.approx(cold.cost, rel=1e-3)
-            cold_evaluations, warm_evaluations = cold_evaluations + cold.iterations, warm_evaluations + warm.iterations
-        warm_start = warm.shifted()
-        state = problem.step(state, warm.controls[0], parameters.dynamics.vector).full()[:, 0]
-    assert 2 * warm_evaluations < cold_evaluations
-
-
-def test_the_same_solve_gives_the_same_bytes(problem, solver, parameters_toward):
-    parameters = parameters_toward((3.0, 0.3), obstacles=(BOX,))
-    first = solver.solve(START, parameters)
-    solver.solve(START + 0.3, parameters)
-    assert solver.solve(START, parameters).controls.tobytes() == first.controls.tobytes()
-
-
-def random_case(generator, parameters_toward, **constraints):
-    state = generator.uniform((-1, -1, -1, -0.3, 0, -0.5), (0, 1, 1, 1.2, 0, 0.5))
-    return state, parameters_toward(tuple(generator.uniform((2, -1, -1), (4, 1, 1))), **constraints)
 
 
 @pytest.mark.slow
@@ -188,25 +129,6 @@ def test_the_path_limits_hold_along_the_closed_loop(problem, snopt, parameters_t
     states = drive(problem, snopt, START, parameters_toward((6.0, 2.0, 1.0), speed_limit=1.0), steps=20)
     assert states[:, 3].max() < 1.05
     assert np.abs(states[:, 3] * states[:, 5]).max() < 2.0
-
-
-@pytest.mark.parametrize("broken", [np.nan, np.inf])
-def test_a_state_that_is_not_finite_is_answered_not_raised(solver, parameters_toward, broken):
-    state = START.copy()
-    state[1] = broken
-    solution = solver.solve(state, parameters_toward((1.0,)))
-    assert solution.status is Status.INVALID_INPUT
-    assert not solution.success
-    # The program is unharmed.
-    assert solver.solve(START, parameters_toward((1.0,))).success
-
-
-@pytest.mark.parametrize("size", [1e80, 1e170, 1e300])
-def test_a_finite_state_that_overflows_the_model_is_answered_not_raised(solver, parameters_toward, size):
-    solution = solver.solve(START + np.array([size, 0, 0, size, 0, 0]), parameters_toward((1.0,), obstacles=(BOX,)))
-    assert not solution.success
-    assert np.isfinite(solution.controls).all()
-    assert solver.solve(START, parameters_toward((1.0,))).success
 
 
 def test_a_callback_that_fails_is_reported_and_does_not_stick(problem, parameters_toward, monkeypatch, caplog):

@@ -1,4 +1,4 @@
-"""The real-time iteration: convergence against SNOPT, phases, warm starts, hard clearance, and every way to fail."""
+"""The real-time iteration: convergence against SNOPT, phases, hard clearance, and every way to fail."""
 
 import dataclasses
 
@@ -13,24 +13,7 @@ from mala_drake.errors import BadInput
 from mala_drake.messages import Shape
 from mala_drake.ward.shapes import ShapeDistances
 
-BOX = Shape("box", 1.5, 0.25, 0.3, 0.3, 0.2, 0.05)
-START = np.array([0.0, 0.0, 0.1, 0.4, 0.0, 0.0])
-
-
-@pytest.fixture(scope="module")
-def rti(problem):
-    return MakeSolver("rti", problem)
-
-
-@pytest.fixture(scope="module")
-def snopt(problem):
-    return MakeSolver("snopt", problem)
-
-
-def random_case(seed, parameters_toward, **constraints):
-    generator = np.random.default_rng(seed)
-    state = generator.uniform((-1, -1, -1, -0.3, 0, -0.5), (0, 1, 1, 1.2, 0, 0.5))
-    return state, parameters_toward(tuple(generator.uniform((2, -1, -1), (4, 1, 1))), **constraints)
+from .cases import BOX, START, random_case
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -117,20 +100,6 @@ def test_without_a_preparation_that_fits_feedback_does_it_all(problem, parameter
     assert solver.feedback(START, heavier).cost == pytest.approx(expected.cost, rel=1e-6)
     solver.prepare(START, parameters)
     assert solver.feedback(START, heavier).cost == pytest.approx(expected.cost, rel=1e-3)
-
-
-def test_a_shifted_warm_start_saves_evaluations_at_equal_cost(problem, rti, parameters_toward):
-    parameters = parameters_toward((3.0, 0.3))
-    state, warm_start, cold_evaluations, warm_evaluations = START, None, 0, 0
-    for _ in range(8):
-        warm = rti.solve(state, parameters, warm_start)
-        if warm_start is not None:
-            cold = rti.solve(state, parameters)
-            assert warm.cost == pytest.approx(cold.cost, rel=1e-3)
-            cold_evaluations, warm_evaluations = cold_evaluations + cold.iterations, warm_evaluations + warm.iterations
-        warm_start = warm.shifted()
-        state = problem.step(state, warm.controls[0], parameters.dynamics.vector).full()[:, 0]
-    assert 1.5 * warm_evaluations < cold_evaluations
 
 
 @pytest.mark.parametrize("qp_solver", ["clarabel", "osqp"])
