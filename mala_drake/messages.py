@@ -127,6 +127,7 @@ class ActionReport(Message):
     solves: int = 0
     failures: int = 0
     detail: str = ""
+    shortfall: tuple[float, float] | None = None  # Of the arm: (dx, dy) in the world that is missing, metres.
 
     @property
     def finished(self) -> bool:
@@ -169,10 +170,13 @@ class SymbolicState(Message):
 
 @dataclass(frozen=True, slots=True)
 class PlaceMismatch(Message):
-    """How far the robot is from being at the place where the action under way is to lead; place "" is none."""
+    """How far the robot is from where the action under way needs it; place "" is none.
+
+    The atom that is missing is that of being at the place, or that of having the place's things within reach.
+    """
 
     place: str = ""
-    error: float = 0.0  # 1 - mu of being at the place, E^psi in its continuous form.
+    error: float = 0.0  # 1 - mu of the atom, E^psi in its continuous form.
     gradient: tuple[float, float] = (0.0, 0.0)  # Of the error, by the robot's position, 1/m.
     offset: tuple[float, float] | None = None  # From the robot to the place, metres; None out of sight.
 

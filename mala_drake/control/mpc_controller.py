@@ -32,7 +32,7 @@ from .action_parameters import DrivingStyle, make_parameters, style_of
 from .leg import Leg, LegGuide, Pose, pose_errors
 from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
-from .parameters import DynamicsParameters, StageParameters, TerminalParameters
+from .parameters import DynamicsParameters, StageParameters, TerminalParameters, learned_parameters
 from .reference import make_reference
 from .solution import Solution, Status
 from .solver import Solver
@@ -248,8 +248,7 @@ class MpcController(LeafSystem):
         """p^f as learned, or None for the nominal one."""
         if not self._learned_dynamics.HasValue(context):
             return None
-        learned: LearnedDynamics = self._learned_dynamics.Eval(context)
-        return DynamicsParameters(*learned.coefficients) if learned.updates else None
+        return learned_parameters(self._learned_dynamics.Eval(context))
 
     def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
         """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.errors import BadInput
-from mala_drake.messages import Message, Shape
+from mala_drake.messages import LearnedDynamics, Message, Shape
 
 from .model import CONTROL_SIZE, STATE_SIZE
 
@@ -120,6 +120,11 @@ class DynamicsParameters(Message):
                 self.yaw_gain,
             )
         )
+
+
+def learned_parameters(learned: LearnedDynamics) -> DynamicsParameters | None:
+    """P^f as it was learned, or None while nothing is."""
+    return DynamicsParameters(*learned.coefficients) if learned.updates else None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

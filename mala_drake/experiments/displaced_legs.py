@@ -12,11 +12,12 @@ from mala_drake.ward.ward_map import Place
 
 
 class DisplacedLegs:
-    """Collects one entry a leg to a displaced place, in the order driven.
+    """Collects one entry a leg to a displaced place, and one an action there whose things are out of reach.
 
-    An entry is fit for JSON: `place`, `outcome`, `mismatch` (1 - mu at the end of the leg, the continuous E^psi),
-    `closed_loop_cost` (R^o, the leg's tracking and terminal cost), `moved` (whether the target was moved after it), and
-    where the target is then: `x`, `y` and `distance_to_true_m`, metres.
+    An entry is fit for JSON: `place`, `outcome`, `mismatch` (1 - mu of the expected atom at the end, the continuous
+    E^psi: of being at the place for a leg, of having its things within reach otherwise), `closed_loop_cost` (R^o, the
+    leg's tracking and terminal cost), `moved` (whether the target was moved after it), and where the target is then:
+    `x`, `y` and `distance_to_true_m`, metres.
     """
 
     def __init__(self, scenario: Scenario, learned: LearnedTargets) -> None:
@@ -33,10 +34,10 @@ class DisplacedLegs:
         self._true = {name: scenario.true_ward(ward).place[name] for name in displacements}
 
     def add(self, action: Action, report: ActionReport, mismatch: PlaceMismatch, learned: LearnedTargets) -> None:
-        """Takes in a leg that has ended, if it was to a displaced place.
+        """Takes in a leg, or an action out of reach, that has ended, if it was at a displaced place.
 
         Args:
-            action: that the leg was of.
+            action: that has ended.
             report: on its end.
             mismatch: at its end.
             learned: after it.

@@ -49,6 +49,7 @@ class EpisodeWatch:
         self._actions: list[str] = []
         self._evaluations: list[ActionEvaluation] = []
         self._legs: list[ActionReport] = []
+        self._out_of_reach = 0  # Sequence of the last action whose things were.
         self._displaced_legs = DisplacedLegs(scenario, self._learned_targets())
         self._before: Preferences = self._read("preference_learner", "preferences")
         self._charge_before = self._charge()
@@ -94,10 +95,18 @@ class EpisodeWatch:
             self._displaced_legs.add(self._action, report, mismatch, self._learned_targets())
             if report.outcome is not Outcome.SUCCESS:
                 news.append(f"the leg ended: {report.outcome.value} ({report.detail})")
+        self._look_at_reach()
         evaluation: ActionEvaluation = self._read("action_meter", "action_evaluation")
         if evaluation.action.sequence > (self._evaluations[-1].action.sequence if self._evaluations else 0):
             self._evaluations.append(evaluation)
         return news
+
+    def _look_at_reach(self) -> None:
+        report: ActionReport = self._read("in_place_executor", "in_place_report")
+        if report.outcome is Outcome.OUT_OF_REACH and report.sequence > self._out_of_reach:
+            self._out_of_reach = report.sequence
+            mismatch: PlaceMismatch = self._read("fuzzy_grounding", "reach_mismatch")
+            self._displaced_legs.add(self._action, report, mismatch, self._learned_targets())
 
     def record(self, *, wall_seconds: float, cpu_seconds: float) -> EpisodeRecord:
         """The record of the episode, failed for lack of time when it has not finished."""

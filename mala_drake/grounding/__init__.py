@@ -21,6 +21,7 @@ from mala_drake.grounding.mismatch import (
     location_error,
     location_error_gradient,
     location_mismatch,
+    reach_error,
     state_mismatch,
     state_mismatch_gradient,
 )
@@ -75,6 +76,7 @@ __all__ = [
     "location_error_gradient",
     "location_mismatch",
     "negation",
+    "reach_error",
     "state_mismatch",
     "state_mismatch_gradient",
     "state_truth",

@@ -15,6 +15,9 @@ from mala_drake.grounding.saturated_ramp import SaturatedRamp
 AT_A_PLACE = SaturatedRamp()
 """Of the distance to a place, metres (paper, Sec. "Fuzzy State Estimation")."""
 
+WITHIN_REACH = SaturatedRamp(full=0.0, zero=4.0)
+"""Of how far the arm falls short of what an action is about, metres; it falls as `AT_A_PLACE` does."""
+
 _KINDS: Mapping[str, Callable[[AbstractMembership], AbstractMembership]] = MappingProxyType(
     {"fuzzy": lambda membership: membership, "crisp": AlphaCut}
 )

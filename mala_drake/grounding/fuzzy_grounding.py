@@ -8,18 +8,27 @@ from collections.abc import Mapping
 from pydrake.common.value import Value
 from pydrake.systems.framework import Context, LeafSystem
 
-from mala_drake.grounding.atom_memberships import AT_A_PLACE
+from mala_drake.grounding.atom_memberships import AT_A_PLACE, WITHIN_REACH
 from mala_drake.grounding.atom_memberships import predicate_memberships as fuzzy_memberships
 from mala_drake.grounding.defuzzification import INSTANTIATION_THRESHOLD
 from mala_drake.grounding.location_grounding import IN_TRANSIT, LocationGrounding
 from mala_drake.grounding.membership import AbstractMembership
-from mala_drake.grounding.mismatch import location_error, location_error_gradient
+from mala_drake.grounding.mismatch import location_error, location_error_gradient, reach_error
 from mala_drake.grounding.predicates import (
     AbstractPredicateMembership,
     Observation,
     world_fact_truths,
 )
-from mala_drake.messages import Action, Atom, Memberships, PlaceMismatch, RobotState, SymbolicState, WorldFacts
+from mala_drake.messages import (
+    Action,
+    ActionReport,
+    Atom,
+    Memberships,
+    PlaceMismatch,
+    RobotState,
+    SymbolicState,
+    WorldFacts,
+)
 
 SIGHT = 6.0
 """Metres within which the robot sees the mark of a place."""
@@ -38,10 +47,12 @@ class FuzzyGrounding(LeafSystem):
         - world_facts
         - action
         - charge
+        - in_place_report
         output_ports:
         - memberships
         - symbolic_state
         - place_mismatch
+        - reach_mismatch
 
     It has no state: all outputs are functions of the inputs. `robot_state` is (x, y, yaw, v_x, v_y, omega_z), `charge`
     the state of charge.
@@ -52,7 +63,9 @@ class FuzzyGrounding(LeafSystem):
     are ignored, since the robot's place is grounded in its position.
 
     `place_mismatch` is about the place of `action`: the continuous mismatch with its derivative, and where the place is
-    as the robot sees it, within `SIGHT`.
+    as the robot sees it, within `SIGHT`. `reach_mismatch` is about what the action in place has found out of reach at
+    its place, if `in_place_report` is connected and says so: no effect of the action can come true there, and the atom
+    of having its things within reach is missing, to a degree.
 
     A robot state that is not finite is an ordinary event: no place is known then. A charge that is not finite counts
     as empty, the safe side.
@@ -91,7 +104,8 @@ class FuzzyGrounding(LeafSystem):
         self._world_facts = self.DeclareAbstractInputPort("world_facts", Value(WorldFacts()))
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
         self._charge = self.DeclareVectorInputPort("charge", 1)
-        inputs = {self.all_input_ports_ticket()}
+        inputs = {port.ticket() for port in (self._robot_state, self._world_facts, self._action, self._charge)}
+        self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._memberships = self.DeclareAbstractOutputPort(
             "memberships", lambda: Value(Memberships()), self._calc_memberships, prerequisites_of_calc=inputs
         )
@@ -104,6 +118,12 @@ class FuzzyGrounding(LeafSystem):
             self._calc_place_mismatch,
             # Who asks for it every tick is not to have the world's facts worked out as often.
             prerequisites_of_calc={self._robot_state.ticket(), self._action.ticket()},
+        )
+        self.DeclareAbstractOutputPort(
+            "reach_mismatch",
+            lambda: Value(PlaceMismatch()),
+            self._calc_reach_mismatch,
+            prerequisites_of_calc={self._action.ticket(), self._in_place_report.ticket()},
         )
 
     def _estimate(self, context: Context) -> RobotState | None:
@@ -159,3 +179,12 @@ class FuzzyGrounding(LeafSystem):
         seen = math.hypot(*offset) <= SIGHT
         error = float(location_error(location, position))
         output.set_value(PlaceMismatch(place, error, (x, y), offset if seen else None))
+
+    def _calc_reach_mismatch(self, context: Context, output: Value) -> None:
+        action: Action = self._action.Eval(context)
+        connected = self._in_place_report.HasValue(context)
+        report: ActionReport = self._in_place_report.Eval(context) if connected else ActionReport()
+        if report.shortfall is None or report.sequence != action.sequence:
+            output.set_value(PlaceMismatch())
+            return
+        output.set_value(PlaceMismatch(action.place, *reach_error(WITHIN_REACH, report.shortfall)))

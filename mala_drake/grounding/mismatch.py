@@ -5,10 +5,13 @@ Paper, Sec. "Expected Location and Fuzzy Mismatch Detection" and "Updating the M
 
 from __future__ import annotations
 
+import math
+
 import numpy.typing as npt
 
 from mala_drake.grounding.aggregation import state_truth, state_truth_gradient
 from mala_drake.grounding.location import LocationMembership
+from mala_drake.grounding.membership import AbstractMembership
 from mala_drake.grounding.norms import AbstractNorms, FloatArray
 
 
@@ -43,6 +46,24 @@ def state_mismatch_gradient(
 ) -> FloatArray:
     """The derivative of `state_mismatch` with respect to the memberships, (M,)."""
     return state_truth_gradient(values, observed, norms=norms) - state_truth_gradient(values, predicted, norms=norms)
+
+
+def reach_error(membership: AbstractMembership, shortfall: tuple[float, float]) -> tuple[float, tuple[float, float]]:
+    """The continuous mismatch 1 - mu of having something within reach, and its derivative.
+
+    Args:
+        membership: of how far the arm falls short, metres.
+        shortfall: the way (dx, dy) in the world by which it does: moving along it makes it less.
+
+    Returns:
+        The mismatch, and its derivative with respect to the robot's position, 1/m; zero where nothing is missing.
+    """
+    distance = math.hypot(*shortfall)
+    error = 1.0 - float(membership.value(distance))
+    if distance == 0.0:
+        return error, (0.0, 0.0)
+    slope = float(membership.derivative(distance)) / distance
+    return error, (slope * shortfall[0], slope * shortfall[1])
 
 
 def location_error(location: LocationMembership, position: npt.ArrayLike) -> FloatArray:

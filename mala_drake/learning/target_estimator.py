@@ -16,6 +16,7 @@ import numpy as np
 
 from mala_drake.errors import BadInput
 from mala_drake.learning.abstract_learner import AbstractLearner, FloatArray
+from mala_drake.learning.shortest_step import shortest_step
 from mala_drake.messages import LearnedTargets
 
 IsFree = Callable[[tuple[float, float]], bool]
@@ -28,32 +29,80 @@ _LEAST_SINGULAR = 0.05  # Of the leg's sensitivity: in a direction that moves th
 _ENOUGH = 4  # Errors below the tolerance, after which a target is not refined any more.
 _SHARES = (0.75, 0.5, 0.25)  # Of a step, tried in turn until the robot can stand there.
 _EXTENSIONS = (0.0, 0.25, 0.5, 0.75)  # Metres that a step may go on over the plateau, tried before.
+_MOST_UNLIKE = 0.5  # Of a sensitivity from the identity, by its greatest singular value.
+
+PLATEAU_MARGIN = 0.3
+"""Metres past the plateau's edge that a step aims at: the robot may stop half of that from its target this time and the
+next."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissingAtom:
+    """An expected atom and how far it is from being true.
+
+    Attributes:
+        error: E = 1 - mu of the atom at the reached position, in [0, 1].
+        gradient: dE / d target, (2,), 1/m.
+        margin: metres past the edge of the atom's plateau to aim at.
+    """
+
+    error: float
+    gradient: FloatArray
+    margin: float = PLATEAU_MARGIN
+
+    @property
+    def demand(self) -> FloatArray:
+        """The shortest step of the target that makes the atom true, with its margin, (2,), metres; 0 if there is none.
+
+        It is Gauss and Newton's, -E dE / |dE|^2, and goes on by the margin.
+        """
+        slope = float(np.linalg.norm(self.gradient))
+        if not (self.error > 0.0 and slope > _LEAST_SLOPE):
+            return np.zeros(2)
+        return np.asarray(-(self.error / slope + self.margin) / slope * self.gradient)
 
 
 @dataclass(frozen=True, slots=True)
 class TargetEvidence:
-    """What the end of one leg says about its target.
+    """What the end of a leg, or an action after it, says about the leg's target.
 
     Attributes:
-        error: E = 1 - mu of the expected atom at the reached position, in [0, 1].
-        error_gradient: dE / d target, (2,), 1/m.
-        offset: from the reached position to the place as it was seen, (2,), metres; None if only E is to be used.
+        missing: the expected atoms that may not be true.
+        offset: from the reached position to the place as it was seen, (2,), metres; None if only atoms are to be used.
         sensitivity: d reached position / d target, (2, 2).
+        target: (x, y) that the leg was to end at, metres; None if it is the present one.
     """
 
-    error: float
-    error_gradient: FloatArray
+    missing: tuple[MissingAtom, ...]
     offset: FloatArray | None
     sensitivity: FloatArray
+    target: tuple[float, float] | None = None
+
+    @property
+    def demands(self) -> list[FloatArray]:
+        """The steps that the missing atoms ask for."""
+        return [demand for atom in self.missing if (demand := atom.demand).any()]
+
+
+def plausible_sensitivity(sensitivity: FloatArray | None) -> FloatArray:
+    """The sensitivity of a leg that has stopped at its target, (2, 2), or the identity where it cannot be so.
+
+    A leg that has stopped is within the tolerance of its target, wherever that is: over a step many times as long, the
+    sensitivity is the identity in the mean. Its derivative at one point may be far from that, or not exist (None): of a
+    leg that was over at once, or whose last steps bend because of a limit. Then the mean is the better guess.
+    """
+    identity = np.eye(2)
+    if sensitivity is None or not np.isfinite(sensitivity).all():
+        return identity
+    return sensitivity if float(np.linalg.norm(sensitivity - identity, 2)) <= _MOST_UNLIKE else identity
 
 
 class TargetEstimator(AbstractLearner):
     """Moves targets to where the mismatch vanishes.
 
-    By the fuzzy mismatch alone a target ends on the plateau of the membership, where nothing tells one point from
-    another: the step aims twice the `tolerance` past its edge, since the robot may stop that far from its target this
-    time and the next. With the geometric error as well it ends at the place itself; what is below `tolerance` is
-    averaged, not followed.
+    By the fuzzy mismatch alone a target ends on the plateaus of the memberships, where nothing tells one point from
+    another: the step is the shortest that is past the edge of each. With the geometric error as well it ends at the
+    place itself; what is below `tolerance` is averaged, not followed.
 
     Like other learners it holds settings only. What is learned is one vector: for each place the target's displacement
     from the map in metres, the number of updates, and how many of them were below the tolerance.
@@ -118,16 +167,18 @@ class TargetEstimator(AbstractLearner):
             return state.copy()
         after = state.copy()
         row = after.reshape(-1, _ENTRIES)[self.places.index(place)]
-        step = self._gauss_newton(evidence, fine=row[_FINE])
+        step = shortest_step(evidence.demands) if evidence.offset is None else self._gauss_newton(evidence, row[_FINE])
         if not step.any():
             return after
         lengths = self._lengths(float(np.linalg.norm(step)), evidence, updates=row[_UPDATES])
-        share = self._free_share(place, row[[_OFFSET_X, _OFFSET_Y]], step, lengths, is_free)
+        about = self.target(state, place) if evidence.target is None else evidence.target
+        before = np.array(about) - self._nominal[place]
+        share = self._free_share(place, before, step, lengths, is_free)
         if share == 0.0:
             return after
-        row[[_OFFSET_X, _OFFSET_Y]] += share * step
+        row[[_OFFSET_X, _OFFSET_Y]] = before + share * step
         row[_UPDATES] += 1.0
-        row[_FINE] += evidence.error == 0.0 and self._is_fine(evidence)
+        row[_FINE] += not evidence.demands and _is_within(self._tolerance, evidence.offset)
         return after
 
     def is_settled(self, state: FloatArray, place: str, error: float, offset: FloatArray | None) -> bool:
@@ -162,25 +213,15 @@ class TargetEstimator(AbstractLearner):
         targets = tuple((place, *self.target(state, place)) for place in moved)
         return LearnedTargets(targets, sum(self.updates(state, place) for place in moved))
 
-    def _is_fine(self, evidence: TargetEvidence) -> bool:
-        return evidence.offset is not None and float(np.linalg.norm(evidence.offset)) <= self._tolerance
-
-    def _gauss_newton(self, evidence: TargetEvidence, *, fine: float) -> FloatArray:
+    def _gauss_newton(self, evidence: TargetEvidence, fine: float) -> FloatArray:
         """The least-squares step that would bring what is left to zero, were the leg linear in its target."""
-        rows, residuals = np.zeros((0, 2)), np.zeros(0)
-        slope = float(np.linalg.norm(evidence.error_gradient))
-        if evidence.error > 0.0 and slope > _LEAST_SLOPE:
-            past = 0.0 if evidence.offset is not None else 2.0 * self._tolerance * slope
-            rows, residuals = evidence.error_gradient[None], np.array([-evidence.error - past])
-        if evidence.offset is not None:
-            gain = 1.0 / (2.0 + fine) if self._is_fine(evidence) else 1.0
-            rows = np.vstack((rows, evidence.sensitivity))
-            residuals = np.concatenate((residuals, gain * evidence.offset))
-        if not residuals.size:
-            return np.zeros(2)
+        gain = 1.0 / (2.0 + fine) if _is_within(self._tolerance, evidence.offset) else 1.0
+        rows = np.vstack((*(atom.gradient for atom in evidence.missing if atom.demand.any()), evidence.sensitivity))
+        missing = [-atom.error for atom in evidence.missing if atom.demand.any()]
+        residuals = np.concatenate((missing, gain * np.asarray(evidence.offset)))
+        # A singular value that is small must not blow the step up.
         largest = float(np.linalg.norm(rows, 2))
-        # One row has one singular value; a second one that is small must not blow the step up.
-        cutoff = min(_LEAST_SINGULAR / largest, 1.0) if len(rows) > 1 and largest > 0.0 else 0.0
+        cutoff = min(_LEAST_SINGULAR / largest, 1.0) if largest > 0.0 else 0.0
         return np.asarray(np.linalg.pinv(rows, rcond=cutoff) @ residuals)
 
     def _radius(self, updates: float) -> float:
@@ -191,8 +232,10 @@ class TargetEstimator(AbstractLearner):
 
         What stands between the target and the place is only passed by a long step; a step over the plateau may go on.
         """
-        farther = _EXTENSIONS if evidence.offset is None else _EXTENSIONS[:1]
-        trusted = min(length, self._radius(updates))
+        farther, margin = (_EXTENSIONS, PLATEAU_MARGIN) if evidence.offset is None else (_EXTENSIONS[:1], 0.0)
+        # A target at the very edge of the plateau may be on it or not: a step that is longer by the margin goes on.
+        radius = self._radius(updates)
+        trusted = length if length <= radius + margin else radius
         return (trusted, *(length + more for more in farther), *(share * trusted for share in _SHARES))
 
     def _free_share(
@@ -208,8 +251,13 @@ class TargetEstimator(AbstractLearner):
         return 0.0
 
 
+def _is_within(tolerance: float, offset: FloatArray | None) -> bool:
+    return offset is not None and float(np.linalg.norm(offset)) <= tolerance
+
+
 def _is_finite(evidence: TargetEvidence) -> bool:
-    numbers = [np.array([evidence.error]), evidence.error_gradient, evidence.sensitivity.ravel()]
-    if evidence.offset is not None:
-        numbers.append(evidence.offset)
+    numbers = [np.array([atom.error, *atom.gradient]) for atom in evidence.missing]
+    numbers += [
+        np.ravel(given) for given in (evidence.sensitivity, evidence.offset, evidence.target) if given is not None
+    ]
     return bool(np.isfinite(np.concatenate(numbers)).all())

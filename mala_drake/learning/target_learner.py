@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
+from pydrake.systems.framework import Context, LeafSystem, State
 
 from mala_drake.clock import LEARN_OFFSET, TICK
 from mala_drake.learning.abstract_learner import FloatArray
-from mala_drake.learning.target_estimator import TargetEstimator, TargetEvidence
+from mala_drake.learning.target_estimator import (
+    PLATEAU_MARGIN,
+    MissingAtom,
+    TargetEstimator,
+    TargetEvidence,
+    plausible_sensitivity,
+)
 from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    LearnedDynamics,
     LearnedTargets,
     MagnetCommand,
+    Message,
     Obstacles,
     Outcome,
     PlaceMismatch,
@@ -30,8 +39,23 @@ from mala_drake.ward.shapes import ShapeDistances
 
 _logger = logging.getLogger(__name__)
 
-_BEGUN, _SEEN = 0, 1
-_MARKS = 8  # Sequence of the leg under way, of the last one learned from, and z_0 of the one under way.
+_REACH_MARGIN = 0.15
+"""Metres inside the arm's reach that a step aims at; at the places of the map there are 0.2 to 0.25."""
+
+STANDING_DISTANCE = 0.5
+"""Metres from anything solid that a target keeps if it is free to; so far off it are the places of the map."""
+
+_NOT_THERE = (Outcome.BLOCKED, Outcome.WAYPOINT_ALLOCATION, Outcome.STEP_BUDGET)  # Legs that could not be driven.
+
+
+@dataclass(frozen=True, slots=True)
+class _Watching(Message):
+    """The newest leg: its action, the state that it began in, where it was to end; and the newest report seen."""
+
+    leg: Action = Action()
+    began: tuple[float, ...] = (0.0,) * 6
+    target: tuple[float, float] = (0.0, 0.0)
+    seen: int = 0
 
 
 class LegSensitivity(Protocol):
@@ -46,6 +70,7 @@ class LegSensitivity(Protocol):
         action: Action,
         carrying: bool,
         weights: Sequence[float],
+        learned: LearnedDynamics,
     ) -> FloatArray:
         """D (x, y at the end) / d (x, y of the target), shape (2, 2).
 
@@ -55,7 +80,7 @@ class LegSensitivity(Protocol):
 
 
 class TargetLearner(LeafSystem):
-    """Learns where legs to places are to end, once from each leg that has stopped at its target.
+    """Learns where legs to places are to end, from what is missing at their ends.
 
     .. pydrake_system::
 
@@ -63,23 +88,33 @@ class TargetLearner(LeafSystem):
         input_ports:
         - action
         - leg_report
+        - in_place_report
         - place_mismatch
+        - reach_mismatch
         - robot_state
         - obstacles
         - magnet
         - preferences
+        - learned_dynamics
         output_ports:
         - learned_targets
 
-    A leg from whose end there is something to learn is simulated in closed loop over the prediction model, from the
-    state that the robot began it in, to find out how its end moves with its target. What happens to the robot is not
-    touched: the planner sees the mismatch as ever, and its next leg to the place goes to the new target.
+    There is evidence in
 
-    A leg without a sensitivity teaches nothing; the next one will. Targets stay clear of what is on the map and of what
-    the sensor sees at the end of the leg.
+    - a leg that has stopped at its target: the missing membership of being at the place, and where the place is seen;
+    - a leg that could not be driven to its target: where the place is seen, or, if the target is where something
+      stands, the missing membership;
+    - an action in place that has found its things out of reach: by how much. It is about the leg before. Who goes by
+      the place as it is seen does not need it.
 
-    The discrete state is the learner's own vector followed by the sequence numbers of the leg under way and of the last
-    one learned from, and the state in which the one under way began.
+    A leg that has stopped is simulated in closed loop over the controller's model, from the state that the robot began
+    it in, to find out how its end moves with its target. `learned_dynamics` is that model, if it is connected and there
+    is one. What happens to the robot is not touched: the planner sees the mismatch as ever, and its next leg to the
+    place goes to the new target.
+
+    Targets stay clear of what is on the map and of what the sensor sees at the end of the leg.
+
+    The discrete state is the learner's own vector, the abstract state what is known of the leg under way.
     """
 
     def __init__(
@@ -108,24 +143,28 @@ class TargetLearner(LeafSystem):
         self._geometric = geometric
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
         self._leg_report = self.DeclareAbstractInputPort("leg_report", Value(ActionReport()))
+        self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._place_mismatch = self.DeclareAbstractInputPort("place_mismatch", Value(PlaceMismatch()))
+        self._reach_mismatch = self.DeclareAbstractInputPort("reach_mismatch", Value(PlaceMismatch()))
         self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
         self._obstacles = self.DeclareAbstractInputPort("obstacles", Value(Obstacles()))
         self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
-        index = self.DeclareDiscreteState(np.append(learner.initial_state(), np.zeros(_MARKS)))
+        self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
+        index = self.DeclareDiscreteState(learner.initial_state())
+        self._watching = self.DeclareAbstractState(Value(_Watching()))
         self.DeclareAbstractOutputPort(
             "learned_targets",
             lambda: Value(LearnedTargets()),
             self._calc_learned_targets,
             prerequisites_of_calc={self.discrete_state_ticket(index)},
         )
-        self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
+        self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
     def learner_state(self, context: Context) -> FloatArray:
         """The learner's state in `context`, for a checkpoint."""
         vector: FloatArray = context.get_discrete_state_vector().value()
-        return vector[:-_MARKS].copy()
+        return vector.copy()
 
     def set_learner_state(self, context: Context, state: FloatArray, *, episode: int) -> None:  # noqa: ARG002
         """Puts what was learned before into `context`, in which no leg has begun yet.
@@ -135,48 +174,100 @@ class TargetLearner(LeafSystem):
             state: of the learner, as `learner_state` gave it.
             episode: the number of the next one; targets are learned in all alike.
         """
-        context.SetDiscreteState(np.append(state, np.zeros(_MARKS)))
+        context.SetDiscreteState(state)
 
     def _calc_learned_targets(self, context: Context, output: Value) -> None:
         output.set_value(self._learner.learned(self.learner_state(context)))
 
-    def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
+    def _update(self, context: Context, state: State) -> None:
+        watching: _Watching = context.get_abstract_state(self._watching).get_value()
         learned = self.learner_state(context)
-        marks = context.get_discrete_state_vector().value()[-_MARKS:].copy()
         action: Action = self._action.Eval(context)
-        report: ActionReport = self._leg_report.Eval(context)
-        if action.kind is ActionKind.MOVE and action.sequence > marks[_BEGUN]:
-            marks[_BEGUN], marks[2:] = action.sequence, self._robot_state.Eval(context)
-        ended = report.finished and report.sequence == action.sequence and report.sequence > marks[_SEEN]
-        if ended:
-            marks[_SEEN] = report.sequence
-            if report.outcome is Outcome.SUCCESS:
-                learned = self._learned_from_leg(context, learned, marks[2:])
-        discrete_state.set_value(np.append(learned, marks))
+        if action.kind is ActionKind.MOVE and action.sequence > watching.leg.sequence:
+            began = tuple(self._robot_state.Eval(context).tolist())
+            known = action.place in self._learner.places
+            target = self._learner.target(learned, action.place) if known else watching.target
+            watching = replace(watching, leg=action, began=began, target=target)
+        port = self._leg_report if action.kind is ActionKind.MOVE else self._in_place_report
+        report: ActionReport = port.Eval(context)
+        if report.finished and report.sequence == action.sequence and report.sequence > watching.seen:
+            watching = replace(watching, seen=report.sequence)
+            learned = self._learned(context, learned, watching, report.outcome)
+        state.get_mutable_discrete_state().set_value(learned)
+        state.get_mutable_abstract_state(self._watching).set_value(watching)
 
-    def _learned_from_leg(self, context: Context, state: FloatArray, began: FloatArray) -> FloatArray:
-        """The learner's state after a leg that has stopped at its target."""
+    def _learned(self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome) -> FloatArray:
+        """The learner's state after an action that has ended."""
         action: Action = self._action.Eval(context)
-        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
-        seen: Obstacles = self._obstacles.Eval(context)
-        place = mismatch.place
-        offset = np.array(mismatch.offset) if self._geometric and mismatch.offset is not None else None
-        if place != action.place or self._learner.is_settled(state, place, mismatch.error, offset):
+        evidence = None
+        if action.kind is ActionKind.MOVE:
+            evidence = self._evidence_of_leg(context, state, watching, outcome)
+        elif outcome is Outcome.OUT_OF_REACH and not self._geometric:
+            evidence = self._evidence_of_reach(context, watching)
+        if evidence is None:
             return state
+        # The place as it is seen is where it is; the plateaus of the atoms leave room.
+        distance = STANDING_DISTANCE if evidence.offset is None else GOAL_DISTANCE
+        clear = self._clearance(context)
+        return self._learner.update(state, action.place, evidence, is_free=lambda point: clear(point) >= distance)
+
+    def _evidence_of_leg(
+        self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome
+    ) -> TargetEvidence | None:
+        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
+        if mismatch.place not in self._learner.places or mismatch.place != watching.leg.place:
+            return None
+        offset = np.array(mismatch.offset) if self._geometric and mismatch.offset is not None else None
+        if outcome is Outcome.SUCCESS:
+            if self._learner.is_settled(state, mismatch.place, mismatch.error, offset):
+                return None
+            sensitivity = self._sensitivity_of(context, watching)
+            return TargetEvidence((_missing(mismatch, sensitivity),), offset, sensitivity, watching.target)
+        if outcome not in _NOT_THERE or (offset is None and self._clearance(context)(watching.target) >= GOAL_DISTANCE):
+            return None
+        # What is missing where the robot is says where the target should be, wherever it was.
+        x, y = self._robot_state.Eval(context)[:2].tolist()
+        return TargetEvidence((_missing(mismatch, np.eye(2)),), offset, np.eye(2), (x, y))
+
+    def _evidence_of_reach(self, context: Context, watching: _Watching) -> TargetEvidence | None:
+        reach: PlaceMismatch = self._reach_mismatch.Eval(context)
+        if reach.error == 0.0 or reach.place not in self._learner.places or reach.place != watching.leg.place:
+            return None
+        sensitivity = self._sensitivity_of(context, watching)
+        missing = [_missing(reach, sensitivity, _REACH_MARGIN)]
+        place: PlaceMismatch = self._place_mismatch.Eval(context)
+        if place.place == reach.place:  # The robot still stands where the leg has ended.
+            missing.append(_missing(place, sensitivity))
+        return TargetEvidence(tuple(missing), None, sensitivity, watching.target)
+
+    def _sensitivity_of(self, context: Context, watching: _Watching) -> FloatArray:
+        """D (x, y at the end) / d (x, y of the target) of the newest leg."""
+        seen: Obstacles = self._obstacles.Eval(context)
+        known = self._learned_dynamics.HasValue(context)
+        place = watching.leg.place
+        found: FloatArray | None
         try:
-            sensitivity = self._sensitivity(
-                began,
-                (*self._learner.target(state, place), self._yaws[place]),
+            found = self._sensitivity(
+                np.array(watching.began),
+                (*watching.target, self._yaws[place]),
                 seen.shapes,
-                action=action,
+                action=watching.leg,
                 carrying=bool(self._magnet.Eval(context).held),
                 weights=self._preferences.Eval(context).estimate,
+                learned=self._learned_dynamics.Eval(context) if known else LearnedDynamics(),
             )
         except RuntimeError as error:
-            _logger.info("nothing is learned from the leg to %s: simulated, it %s", place, error)
-            return state
-        evidence = TargetEvidence(mismatch.error, np.array(mismatch.gradient) @ sensitivity, offset, sensitivity)
+            _logger.info("the leg to %s has no sensitivity: simulated, it %s", place, error)
+            found = None
+        return plausible_sensitivity(found)
+
+    def _clearance(self, context: Context) -> Callable[[tuple[float, float]], float]:
+        """The distance of a point to anything solid, as far as the robot knows and sees, metres."""
+        seen: Obstacles = self._obstacles.Eval(context)
         distances = ShapeDistances((*self._mapped, *seen.shapes))
-        return self._learner.update(
-            state, place, evidence, is_free=lambda point: float(distances(point).min()) >= GOAL_DISTANCE
-        )
+        return lambda point: float(distances(point).min())
+
+
+def _missing(mismatch: PlaceMismatch, sensitivity: FloatArray, margin: float = PLATEAU_MARGIN) -> MissingAtom:
+    """The atom of a mismatch, by the target of a leg with this sensitivity."""
+    return MissingAtom(mismatch.error, np.array(mismatch.gradient) @ sensitivity, margin)

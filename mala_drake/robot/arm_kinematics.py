@@ -35,7 +35,9 @@ PAD_OFFSETS = (0.07, -0.07)
 PAD_RADIUS = 0.02
 """Of a roller, metres: the top of an item hangs that much below the gripper."""
 
-_YAW_LIMIT = 1.6
+YAW_LIMIT = 1.6
+"""Of the shoulder, to each side, radians."""
+
 _SHOULDER_LIMITS = (-1.0, 2.2)
 _ELBOW_LIMITS = (-2.8, 0.05)
 
@@ -63,7 +65,7 @@ def joints_for_gripper(p_BG: Point) -> Joints | None:
 def _within_limits(joints: Joints) -> bool:
     yaw, shoulder, elbow = joints
     return (
-        abs(yaw) <= _YAW_LIMIT
+        abs(yaw) <= YAW_LIMIT
         and _SHOULDER_LIMITS[0] <= shoulder <= _SHOULDER_LIMITS[1]
         and _ELBOW_LIMITS[0] <= elbow <= _ELBOW_LIMITS[1]
     )

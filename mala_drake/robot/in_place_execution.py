@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 from mala_drake.clock import ROUNDING, TICK
 from mala_drake.messages import Action, ActionKind, ArmCommand, Message, Outcome
 from mala_drake.robot.arm_kinematics import STOWED, Joints, Point, joints_for_gripper
+from mala_drake.robot.arm_reach import Way, way_to_reach_all
 from mala_drake.robot.gripper_geometry import PlanarPose, gripper_to_hang_at, hanging_positions, landing_positions
 from mala_drake.robot.in_place_motions import MOTIONS, Aim, gripper_target, phase_index, works_about_goal
 from mala_drake.robot.item_messages import HandedItem
-from mala_drake.robot.put_spots import choose_spot, work_goal
+from mala_drake.robot.put_spots import choose_spot, way_to_spots, way_to_work, work_goal
 from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.in_place_actions import COLLECTING, DELIVERING, SLOTS, VERBS, InPlaceAction, Verb, in_place_action
 from mala_drake.ward.items import return_spots, table_spots, work_spot
@@ -75,6 +76,7 @@ class Execution(Message):
         held: what the magnet is to hold.
         outcome: how it ended.
         detail: why, in words.
+        shortfall: world (dx, dy) by which the arm, or the charger's contacts, fell short; None if they did not.
         draw: charge taken from the battery, 1/s.
         charging: charge put into it, 1/s.
     """
@@ -93,6 +95,7 @@ class Execution(Message):
     held: Held = ()
     outcome: Outcome = Outcome.SUCCESS
     detail: str = ""
+    shortfall: Way | None = None
     draw: float = 0.0
     charging: float = 0.0
 
@@ -158,7 +161,9 @@ def _prepare_working(execution: Execution, work: InPlaceAction, senses: Senses, 
         return _end(execution, Outcome.OUT_OF_REACH, f"there is nothing to work on at {place!r}", senses)
     goal = gripper_to_hang_at((spot.x, spot.y, spot.z), senses.base, slot=-1)
     targets = [gripper_target(phase, goal) for phase in MOTIONS[work.verb]]
-    if any(target is not None and joints_for_gripper(target) is None for target in targets):
+    points = [target for target in targets if target is not None]
+    if any(joints_for_gripper(point) is None for point in points):
+        execution = replace(execution, shortfall=_in_world(way_to_reach_all(points), senses))
         return _end(execution, Outcome.OUT_OF_REACH, f"the arm does not reach at {place!r}", senses)
     return replace(execution, goal=goal)
 
@@ -167,7 +172,11 @@ def _prepare_recharge(execution: Execution, work: InPlaceAction, senses: Senses,
     charger = ward.place.get(execution.action.place)
     if charger is None or charger.category != "charger":
         return _end(execution, Outcome.OUT_OF_REACH, f"there is no charger at {execution.action.place!r}", senses)
-    if math.dist(senses.base[:2], (charger.x, charger.y)) > CHARGER_REACH:
+    way = charger.x - senses.base[0], charger.y - senses.base[1]
+    distance = math.hypot(*way)
+    if distance > CHARGER_REACH:
+        missing = 1.0 - CHARGER_REACH / distance
+        execution = replace(execution, shortfall=(missing * way[0], missing * way[1]))
         return _end(execution, Outcome.OUT_OF_REACH, f"too far from {charger.name}", senses)
     return replace(execution, charging=max(0.0, 1.0 - senses.charge) / (_CHARGING_TIME * work.seconds))
 
@@ -184,6 +193,8 @@ def _prepare_putting(execution: Execution, work: InPlaceAction, senses: Senses, 
     landings = None if goal is None else landing_positions(senses.base, goal)
     if goal is None or landings is None:
         why = "there is no room left" if reachable else "the arm does not reach"
+        if not reachable:
+            execution = replace(execution, shortfall=_in_world(way_to_spots(spots, senses.base, work.slot), senses))
         return _end(execution, Outcome.OUT_OF_REACH, f"{why} at {place!r}", senses)
     return replace(execution, goal=goal, landings=landings)
 
@@ -244,6 +255,8 @@ def _aim_at_item(execution: Execution, senses: Senses) -> Execution:
     ((item, slot),) = execution.handled
     goal = work_goal(senses.positions[item], senses.base, slot)
     if goal is None:
+        way = way_to_work(senses.positions[item], senses.base, slot)
+        execution = replace(execution, shortfall=_in_world(way, senses))
         return _end(execution, Outcome.OUT_OF_REACH, f"the arm does not reach {item}", senses)
     return replace(execution, goal=goal)
 
@@ -291,6 +304,12 @@ def _end(execution: Execution, outcome: Outcome, detail: str, senses: Senses) ->
             (item, pad) for item, pad in held if math.dist(senses.positions[item], hanging[pad]) <= ITEM_TOLERANCE
         )
     return replace(execution, outcome=outcome, detail=detail, arm=ArmCommand(), held=held, draw=0.0, charging=0.0)
+
+
+def _in_world(way: Way, senses: Senses) -> Way:
+    """A way in the base frame as one in the world."""
+    cosine, sine = math.cos(senses.base[2]), math.sin(senses.base[2])
+    return cosine * way[0] - sine * way[1], sine * way[0] + cosine * way[1]
 
 
 def _is_finite(senses: Senses) -> bool:

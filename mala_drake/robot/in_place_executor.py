@@ -104,7 +104,13 @@ class InPlaceExecutor(LeafSystem):
     def _calc_report(self, context: Context, output: Value) -> None:
         execution = self._current(context)
         output.set_value(
-            ActionReport(execution.action.sequence, execution.outcome, steps=execution.steps, detail=execution.detail)
+            ActionReport(
+                execution.action.sequence,
+                execution.outcome,
+                steps=execution.steps,
+                detail=execution.detail,
+                shortfall=execution.shortfall,
+            )
         )
 
     def _calc_charge_rates(self, context: Context, output: BasicVector) -> None:

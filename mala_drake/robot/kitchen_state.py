@@ -40,7 +40,7 @@ class KitchenState(Message):
         hands_clean: whether the robot's gripper is.
         contamination_risk: whether something unwashed or raw has been handled since the last cleaning or cooking.
         served: the boxes that lie on the bedside table as a meal.
-        at_bedside: whether the robot stands where it reaches a bedside table.
+        at_bedside: whether the robot stands at a bedside, to hand a meal over.
     """
 
     dish: str = ""

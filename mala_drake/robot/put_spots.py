@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from mala_drake.robot.arm_kinematics import Point, joints_for_gripper
+from mala_drake.robot.arm_reach import NO_WAY, Way, way_to_reach_all
 from mala_drake.robot.gripper_geometry import PlanarPose, gripper_to_hang_at, landing_positions
 from mala_drake.robot.in_place_motions import HOVER_HEIGHT
 from mala_drake.ward.items import ItemPose
@@ -26,6 +27,23 @@ def work_goal(center: Point, base: PlanarPose, slot: int) -> Point | None:
         return None
     above = (goal[0], goal[1], goal[2] + HOVER_HEIGHT)
     return goal if joints_for_gripper(goal) is not None and joints_for_gripper(above) is not None else None
+
+
+def way_to_work(center: Point, base: PlanarPose, slot: int) -> Way:
+    """The way in the base frame that the base has to move for the gripper to work there, see `work_goal`.
+
+    It is right to 0.04 m: the pads turn with the arm, and a robot that has moved stretches it in another direction.
+    """
+    goal = gripper_to_hang_at(center, base, slot)
+    if goal is None:  # So near to the arm's axis that the pad's offset does not matter.
+        goal = gripper_to_hang_at(center, base, -1)
+    return NO_WAY if goal is None else way_to_reach_all((goal, (goal[0], goal[1], goal[2] + HOVER_HEIGHT)))
+
+
+def way_to_spots(spots: Iterable[ItemPose], base: PlanarPose, slot: int) -> Way:
+    """The shortest way in the base frame that the base has to move for one of the spots to be within reach."""
+    ways = [way_to_work((spot.x, spot.y, spot.z + _DROP), base, slot) for spot in spots]
+    return min(ways, key=lambda way: math.hypot(*way), default=NO_WAY)
 
 
 def choose_spot(

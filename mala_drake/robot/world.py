@@ -36,7 +36,7 @@ from mala_drake.ward.ward_map import Ward
 REQUESTED: Mapping[str, str] = {"medication": "med_antibiotic", "supplement": "supp_vitamin_d"}
 """What the patient of the hospital case is to get."""
 
-_BEDSIDE_REACH = 0.6  # Metres from a bedside's standing point within which the arm reaches its table.
+_AT_BEDSIDE = 1.0  # Metres from a bedside's standing point; whether the arm reaches its table, it finds out itself.
 _RESTING_SLACK = 0.03  # Metres that the centre of a box on a table may be off its height: it may have tipped over.
 
 
@@ -190,7 +190,7 @@ class World(LeafSystem):
         return hanging_positions(base, (yaw, shoulder, elbow))
 
     def _follow_base(self, world: WorldState, base: PlanarPose) -> WorldState:
-        at_bedside = any(math.dist(base[:2], place) <= _BEDSIDE_REACH for place in self._bedsides)
+        at_bedside = any(math.dist(base[:2], place) <= _AT_BEDSIDE for place in self._bedsides)
         if at_bedside == world.kitchen.at_bedside:
             return world
         return replace(world, kitchen=replace(world.kitchen, at_bedside=at_bedside))

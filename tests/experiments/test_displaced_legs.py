@@ -59,3 +59,12 @@ def test_legs_to_other_places_are_not_kept(scenario):
     legs.add(go("stove"), report(), PlaceMismatch("stove", 0.0), LearnedTargets())
     legs.add(go("pantry"), report(), PlaceMismatch(), LearnedTargets())
     assert not legs.entries
+
+
+def test_an_action_there_whose_things_are_out_of_reach_is_kept_as_well(scenario):
+    legs = mut.DisplacedLegs(scenario, LearnedTargets())
+    collect = Action(2, ActionKind.IN_PLACE, "collect_ingredient", ("robot1",), "pantry", "pantry")
+    learned = LearnedTargets((("pantry", MAPPED[0], MAPPED[1] + 1.0),), 1)
+    legs.add(collect, ActionReport(2, Outcome.OUT_OF_REACH), PlaceMismatch("pantry", 0.1), learned)
+    ((outcome, mismatch, moved),) = [(each["outcome"], each["mismatch"], each["moved"]) for each in legs.entries]
+    assert (outcome, mismatch, moved) == ("out_of_reach", 0.1, True)

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 from pydrake.common.value import Value
@@ -8,7 +9,16 @@ from pydrake.systems.primitives import ConstantVectorSource
 import mala_drake.grounding as mut
 from mala_drake.errors import BadInput
 from mala_drake.grounding.fuzzy_grounding import SIGHT
-from mala_drake.messages import Action, ActionKind, Memberships, PlaceMismatch, SymbolicState, WorldFacts
+from mala_drake.messages import (
+    Action,
+    ActionKind,
+    ActionReport,
+    Memberships,
+    Outcome,
+    PlaceMismatch,
+    SymbolicState,
+    WorldFacts,
+)
 
 LOCATIONS = {"pharmacy_north": (5.0, 18.0), "home": (0.0, 0.0), "pantry": (-3.0, 15.0)}
 HAS_MEDICATION = ("has-medication", "robot1")
@@ -39,6 +49,10 @@ class Probe:
     @property
     def place_mismatch(self) -> PlaceMismatch:
         return self.system.GetOutputPort("place_mismatch").Eval(self.context)
+
+    @property
+    def reach_mismatch(self) -> PlaceMismatch:
+        return self.system.GetOutputPort("reach_mismatch").Eval(self.context)
 
     @property
     def symbolic_state(self) -> SymbolicState:
@@ -216,3 +230,15 @@ def test_without_an_expected_place_or_a_position_there_is_no_mismatch(dut):
     assert dut.place_mismatch == PlaceMismatch()
     dut.fix(action=Value(TO_PANTRY), robot_state=[math.nan] + [0.0] * 5)
     assert dut.place_mismatch == PlaceMismatch()
+
+
+def test_what_is_out_of_reach_is_missing_to_a_degree(dut):
+    assert dut.reach_mismatch == PlaceMismatch()  # Nobody is connected.
+    collect = Action(4, ActionKind.IN_PLACE, "collect_ingredient", ("robot1",), "pantry", "pantry")
+    out_of_reach = ActionReport(4, Outcome.OUT_OF_REACH, shortfall=(0.0, -0.8))
+    dut.fix(action=Value(collect), in_place_report=Value(out_of_reach))
+    assert dut.reach_mismatch == PlaceMismatch("pantry", pytest.approx(0.2), (0.0, 0.25))
+    dut.fix(in_place_report=Value(ActionReport(4, Outcome.NOT_THERE)))
+    assert dut.reach_mismatch == PlaceMismatch()
+    dut.fix(action=Value(replace(collect, sequence=5)), in_place_report=Value(out_of_reach))
+    assert dut.reach_mismatch == PlaceMismatch()  # It is about an earlier action.

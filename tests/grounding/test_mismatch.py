@@ -8,10 +8,12 @@ from mala_drake.grounding import (
     LocationMembership,
     MinimumNorms,
     ProductNorms,
+    SaturatedRamp,
     best_state,
     location_error,
     location_error_gradient,
     location_mismatch,
+    reach_error,
     state_mismatch,
     state_mismatch_gradient,
 )
@@ -82,3 +84,21 @@ def test_the_gradient_of_the_error_leads_away_from_the_place(dx, dy):
     ]
     np.testing.assert_allclose(gradient, differences, atol=1e-7)
     assert np.dot(gradient, (dx, dy)) > 0.0
+
+
+@given(st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
+def test_less_is_out_of_reach_the_nearer_the_robot_comes(dx, dy):
+    ramp = SaturatedRamp(full=0.0, zero=4.0)
+    distance = float(np.hypot(dx, dy))
+    assume(abs(distance - 4.0) > 1e-3 and distance > 1e-3)
+    error, gradient = reach_error(ramp, (dx, dy))
+    assert error == pytest.approx(min(distance / 4.0, 1.0))
+    for axis in range(2):
+        step = STEP * np.eye(2)[axis]
+        # A robot that moves by `step` has so much less to go.
+        later, sooner = (reach_error(ramp, tuple(np.array([dx, dy]) - sign * step))[0] for sign in (1, -1))
+        assert gradient[axis] == pytest.approx((later - sooner) / (2 * STEP), abs=1e-6)
+
+
+def test_within_reach_nothing_is_missing():
+    assert reach_error(SaturatedRamp(full=0.0, zero=4.0), (0.0, 0.0)) == (0.0, (0.0, 0.0))

@@ -53,12 +53,9 @@ class Legs:
         """One leg and its update; returns the mismatch that was found."""
         position = self.reached()
         error = float(location_error(self.location, position))
-        evidence = mut.TargetEvidence(
-            error,
-            location_error_gradient(self.location, position) @ self._sensitivity,
-            self.true - position if self._geometric else None,
-            self._sensitivity,
-        )
+        missing = mut.MissingAtom(error, location_error_gradient(self.location, position) @ self._sensitivity)
+        offset = self.true - position if self._geometric else None
+        evidence = mut.TargetEvidence((missing,), offset, self._sensitivity)
         self.state = self.estimator.update(self.state, "pantry", evidence, is_free=self._is_free)
         return error
 
@@ -104,7 +101,7 @@ def test_legs_that_do_not_move_as_their_target_does_are_allowed_for(length, angl
 def test_the_step_is_that_of_gauss_and_newton():
     legs = Legs((3.0, 0.0))
     legs.drive()
-    # 2 m to the plateau's edge and twice the tolerance past it, along the gradient.
+    # 2 m to the plateau's edge and the margin past it, along the gradient.
     np.testing.assert_allclose(legs.target, (-3.0 + 2.3, 15.0), atol=1e-12)
 
 
@@ -176,14 +173,16 @@ def test_a_direction_in_which_the_leg_does_not_move_is_left_alone():
 def test_what_is_not_finite_and_unknown_places_teach_nothing(bad):
     estimator = mut.TargetEstimator(PLACES)
     state = estimator.initial_state()
-    good = mut.TargetEvidence(0.5, np.array([0.25, 0.0]), None, np.eye(2))
+    atom = mut.MissingAtom(0.5, np.array([0.25, 0.0]))
+    good = mut.TargetEvidence((atom,), None, np.eye(2))
     assert estimator.update(state, "pantry", good).any()
     assert not estimator.update(state, "elsewhere", good).any()
     for evidence in (
-        mut.TargetEvidence(bad, np.array([0.25, 0.0]), None, np.eye(2)),
-        mut.TargetEvidence(0.5, np.array([bad, 0.0]), None, np.eye(2)),
-        mut.TargetEvidence(0.5, np.array([0.25, 0.0]), np.array([bad, 0.0]), np.eye(2)),
-        mut.TargetEvidence(0.5, np.array([0.25, 0.0]), None, np.full((2, 2), bad)),
+        mut.TargetEvidence((mut.MissingAtom(bad, np.array([0.25, 0.0])),), None, np.eye(2)),
+        mut.TargetEvidence((mut.MissingAtom(0.5, np.array([bad, 0.0])),), None, np.eye(2)),
+        mut.TargetEvidence((atom,), np.array([bad, 0.0]), np.eye(2)),
+        mut.TargetEvidence((atom,), None, np.full((2, 2), bad)),
+        mut.TargetEvidence((atom,), None, np.eye(2), (bad, 0.0)),
     ):
         assert not estimator.update(state, "pantry", evidence).any()
     assert not state.any()
@@ -214,3 +213,53 @@ def test_settings_out_of_range_are_refused(wrong):
 def test_a_place_that_is_nowhere_is_refused():
     with pytest.raises(BadInput, match="nominal target pantry"):
         mut.TargetEstimator({"pantry": (np.nan, 0.0)})
+
+
+def test_a_step_stops_at_the_trust_radius_unless_that_were_at_the_edge_of_the_plateau():
+    legs = Legs((3.45, 0.0))  # 2.45 m to the edge: the trust radius of 2.5 m would end on it.
+    legs.drive()
+    assert legs.target[0] == pytest.approx(PLACES["pantry"][0] + 2.45 + mut.PLATEAU_MARGIN)
+    legs = Legs((3.55, 0.0))
+    legs.drive()
+    assert legs.target[0] == pytest.approx(PLACES["pantry"][0] + 2.5)
+
+
+def test_what_is_said_of_an_earlier_target_moves_on_from_that():
+    estimator = mut.TargetEstimator(PLACES)
+    atom = mut.MissingAtom(0.25, np.array([-0.25, 0.0]))
+    once = estimator.update(estimator.initial_state(), "pantry", mut.TargetEvidence((atom,), None, np.eye(2)))
+    assert estimator.target(once, "pantry") == pytest.approx((-3.0 + 1.3, 15.0))
+    about = mut.TargetEvidence((atom,), None, np.eye(2), PLACES["pantry"])
+    again = estimator.update(once, "pantry", about)
+    assert estimator.target(again, "pantry") == pytest.approx((-3.0 + 1.3, 15.0))
+    assert estimator.updates(again, "pantry") == 2
+
+
+def test_all_missing_atoms_come_true_at_once():
+    """Being at a place, and having something within reach that is beyond it to the side."""
+    estimator, start = mut.TargetEstimator(PLACES), np.array(PLACES["pantry"])
+    place, item, reach = LocationMembership((-1.0, 15.0)), np.array([-1.0, 16.5]), 0.9
+
+    def missing(position):
+        short = max(np.linalg.norm(item - position) - reach, 0.0)
+        towards = (item - position) / np.linalg.norm(item - position)
+        return (
+            mut.MissingAtom(float(location_error(place, position)), location_error_gradient(place, position)),
+            mut.MissingAtom(short / 4.0, -towards / 4.0, 0.15),
+        )
+
+    state, reached = estimator.initial_state(), start
+    for _ in range(3):  # The direction to the item turns on the way.
+        state = estimator.update(state, "pantry", mut.TargetEvidence(missing(reached), None, np.eye(2)))
+        reached = np.array(estimator.target(state, "pantry"))
+    assert all(atom.error == 0.0 for atom in missing(reached))
+
+
+@pytest.mark.parametrize("sensitivity", [np.diag([0.9, 1.2]), np.array([[1.0, 0.3], [-0.2, 0.8]])])
+def test_a_sensitivity_of_a_leg_that_stops_is_believed(sensitivity):
+    np.testing.assert_array_equal(mut.plausible_sensitivity(sensitivity), sensitivity)
+
+
+@pytest.mark.parametrize("wrong", [None, np.zeros((2, 2)), np.diag([1.0, 3.0]), np.full((2, 2), np.nan)])
+def test_for_one_that_it_cannot_have_the_target_itself_stands_in(wrong):
+    np.testing.assert_array_equal(mut.plausible_sensitivity(wrong), np.eye(2))

@@ -11,6 +11,7 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    LearnedDynamics,
     LearnedTargets,
     MagnetCommand,
     Obstacles,
@@ -23,6 +24,10 @@ from mala_drake.messages import (
 NOMINAL = {"pantry": (-3.0, 15.0), "stove": (-3.0, 20.5)}
 YAWS = {"pantry": 0.0, "stove": 3.0}
 MISSING = PlaceMismatch("pantry", 0.25, (-0.25, 0.0), (2.0, 0.0))  # The pantry is 2 m farther east.
+
+
+AT_PANTRY = PlaceMismatch("pantry")
+SHORT = PlaceMismatch("pantry", 0.1, (0.0, -0.25))  # The arm falls 0.4 m short, to the north.
 
 
 def move(sequence, place="pantry"):
@@ -46,7 +51,9 @@ class Bench:
             for name, value in {
                 "action": Action(),
                 "leg_report": ActionReport(),
+                "in_place_report": ActionReport(),
                 "place_mismatch": PlaceMismatch(),
+                "reach_mismatch": PlaceMismatch(),
                 "obstacles": Obstacles((Shape("far", 40.0, 40.0, radius=0.1),)),
                 "magnet": MagnetCommand(),
                 "preferences": Preferences(),
@@ -73,6 +80,12 @@ class Bench:
         self.simulator.AdvanceTo(self.context.get_time() + 1.0)
         return self.system.GetOutputPort("learned_targets").Eval(self.context)
 
+    def work(self, sequence, reach, mismatch=AT_PANTRY, outcome=Outcome.OUT_OF_REACH) -> LearnedTargets:
+        """An action in place at the pantry, which finds its things `reach`."""
+        collect = Action(sequence, ActionKind.IN_PLACE, "collect_ingredient", ("robot1",), "pantry", "pantry")
+        self.send(action=collect, in_place_report=ActionReport(sequence), place_mismatch=mismatch).tick()
+        return self.send(in_place_report=ActionReport(sequence, outcome), reach_mismatch=reach).tick()
+
     def drive(self, sequence, mismatch=MISSING, outcome=Outcome.SUCCESS) -> LearnedTargets:
         self.place(0.0, 1.0).send(action=move(sequence), leg_report=ActionReport(sequence)).tick()
         self.place(-3.0, 15.0).send(leg_report=ActionReport(sequence, outcome), place_mismatch=mismatch)
@@ -98,7 +111,19 @@ def test_the_leg_that_is_simulated_is_the_one_that_was_driven():
     assert began == (0.0, 1.0, 0.1, 0.0, 0.0, 0.0)
     assert target == (-3.0, 15.0, 0.0)
     assert obstacles == seen.shapes
-    assert how == {"action": move(1), "carrying": True, "weights": Preferences().estimate}
+    assert how == {
+        "action": move(1),
+        "carrying": True,
+        "weights": Preferences().estimate,
+        "learned": LearnedDynamics(),
+    }
+
+
+def test_the_leg_is_simulated_over_the_dynamics_that_were_learned():
+    bench, learned = Bench(), LearnedDynamics((5.0, 0.0, 0.1, 1.0, 1.0, 0.9), (0.1,) * 6, 40)
+    bench.system.GetInputPort("learned_dynamics").FixValue(bench.context, Value(learned))
+    bench.drive(1)
+    assert bench.legs[0][3]["learned"] == learned
 
 
 def test_the_place_as_it_is_seen_counts_only_if_wanted():
@@ -123,10 +148,65 @@ def test_where_nothing_is_missing_no_leg_is_simulated(mismatch):
     assert not bench.legs
 
 
-def test_a_leg_that_did_not_stop_at_its_target_teaches_nothing():
+@pytest.mark.parametrize("outcome", [Outcome.BLOCKED, Outcome.SOLVER_FAILURE, Outcome.BATTERY_EMPTY])
+def test_a_leg_that_did_not_stop_at_its_target_teaches_nothing_by_its_mismatch(outcome):
     bench = Bench()
-    assert bench.drive(1, outcome=Outcome.BLOCKED) == LearnedTargets()
+    assert bench.drive(1, outcome=outcome) == LearnedTargets()
     assert not bench.legs
+
+
+def test_what_is_seen_of_the_place_counts_wherever_a_leg_has_failed():
+    bench = Bench(geometric=True)
+    bench.place(-3.0, 15.0).send(action=move(1), leg_report=ActionReport(1)).tick()
+    bench.place(-5.0, 15.5).send(leg_report=ActionReport(1, Outcome.BLOCKED))
+    ((_, x, y),) = bench.send(place_mismatch=PlaceMismatch("pantry", 0.4, (-0.25, 0.0), (2.0, 1.0))).tick().targets
+    assert (x, y) == pytest.approx((-3.0, 16.5), abs=0.1)
+    assert not bench.legs
+    assert Bench(geometric=True).drive(1, outcome=Outcome.SOLVER_FAILURE) == LearnedTargets()
+
+
+def test_a_target_where_something_stands_is_given_up_even_by_the_mismatch_alone():
+    bench = Bench().send(obstacles=Obstacles((Shape("cart", -3.0, 15.0, radius=0.5),)))
+    bench.place(-6.0, 15.0).send(action=move(1), leg_report=ActionReport(1)).tick()
+    bench.place(-5.0, 15.0).send(leg_report=ActionReport(1, Outcome.BLOCKED), place_mismatch=MISSING)
+    ((_, x, y),) = bench.tick().targets
+    assert y == pytest.approx(15.0)
+    assert -5.0 < x <= -3.0 - 0.5 - mut.STANDING_DISTANCE  # From the robot towards the place, as far as is free.
+
+
+def test_what_is_out_of_reach_moves_the_target_of_the_leg_before():
+    bench = Bench()
+    bench.drive(1, AT_PANTRY)
+    ((_, x, y),) = bench.work(2, SHORT).targets
+    assert (x, y) == pytest.approx((-3.0, 15.0 + 0.4 + 0.15))
+    ((began, target, _, how),) = bench.legs  # It is simulated, once that is needed.
+    assert (began[:2], target, how["action"]) == ((0.0, 1.0), (-3.0, 15.0, 0.0), move(1))
+
+
+def test_reach_and_place_are_minded_at_once():
+    bench = Bench()
+    bench.drive(1, MISSING)
+    ((_, x, y),) = bench.work(2, SHORT, mismatch=MISSING).targets
+    assert (x, y) == pytest.approx((-3.0 + 1.3, 15.0 + 0.55))
+
+
+@pytest.mark.parametrize("outcome", [Outcome.SUCCESS, Outcome.NOT_THERE, Outcome.CANCELLED])
+def test_other_ends_of_actions_in_place_teach_nothing(outcome):
+    bench = Bench()
+    bench.drive(1, AT_PANTRY)
+    assert bench.work(2, SHORT, outcome=outcome) == LearnedTargets()
+
+
+def test_reach_is_not_needed_where_the_place_is_seen():
+    bench = Bench(geometric=True)
+    learned = bench.drive(1)
+    assert bench.work(2, SHORT) == learned
+
+
+def test_reach_teaches_nothing_about_another_place_than_the_leg_led_to():
+    bench = Bench()
+    bench.drive(1, AT_PANTRY)
+    assert bench.work(2, PlaceMismatch("stove", 0.1, (0.0, -0.25))) == LearnedTargets()
 
 
 def test_another_places_mismatch_teaches_nothing():
@@ -134,17 +214,15 @@ def test_another_places_mismatch_teaches_nothing():
     assert bench.drive(1, PlaceMismatch("stove", 0.5, (0.25, 0.0), (1.0, 0.0))) == LearnedTargets()
 
 
-def test_a_leg_without_a_sensitivity_teaches_nothing_and_the_next_one_does():
+def test_of_a_leg_without_a_sensitivity_the_end_is_where_the_target_was():
     bench = Bench(error="has no derivative")
-    assert bench.drive(1) == LearnedTargets()
-    bench._error = None
-    assert bench.drive(2).updates == 1
+    assert bench.drive(1) == Bench().drive(1)
 
 
 def test_targets_stay_clear_of_what_is_seen():
     bench = Bench().send(obstacles=Obstacles((Shape("cart", -1.7, 15.0, radius=0.3),)))
     ((_, x, _),) = bench.drive(1).targets
-    assert abs(x + 1.7) >= 0.3 + mut.GOAL_DISTANCE
+    assert abs(x + 1.7) >= 0.3 + mut.STANDING_DISTANCE
 
 
 def test_what_was_learned_goes_on_in_a_fresh_context():

@@ -110,6 +110,43 @@ def test_what_is_too_far_away_is_out_of_reach(puppet):
     assert puppet.execution.held == ((MEDICINE, 0), (SUPPLEMENT, 1))
 
 
+@pytest.mark.parametrize(
+    ("name", "place", "item"),
+    [
+        ("collect_med_antibiotic", "pharmacy_north", MEDICINE),
+        ("recharge", "charge_main", None),
+        ("deliver_on_bedside_table_left", "patient_bed_left", None),
+    ],
+)
+@pytest.mark.parametrize(("ahead", "aside"), [(-1.2, 0.0), (-0.4, 1.1), (0.1, -1.3)])
+def test_what_is_missing_of_the_arm_is_what_the_robot_has_to_move(puppet, name, place, item, ahead, aside):
+    if name.startswith("deliver"):
+        puppet.load()
+    here = puppet.ward.place[place]
+    cosine, sine = math.cos(here.yaw), math.sin(here.yaw)
+    x, y = here.x + ahead * cosine - aside * sine, here.y + ahead * sine + aside * cosine
+
+    def do_after_moving(by):
+        puppet.base = (x + by * dx, y + by * dy, here.yaw)
+        puppet.carry()
+        return puppet.do(name, place, item)
+
+    dx = dy = 0.0
+    assert do_after_moving(0.0) is Outcome.OUT_OF_REACH
+    dx, dy = puppet.execution.shortfall
+    off = 0.02 / math.hypot(dx, dy)
+    assert do_after_moving(1.0 - off) is Outcome.OUT_OF_REACH
+    assert do_after_moving(1.0 + off) is Outcome.SUCCESS
+    assert puppet.execution.shortfall is None
+
+
+def test_of_a_place_without_anything_to_reach_nothing_is_missing(puppet):
+    puppet.load()
+    puppet.stand_at("home")
+    assert puppet.do("deliver_on_bedside_table_left", "") is Outcome.OUT_OF_REACH
+    assert puppet.execution.shortfall is None
+
+
 def test_a_full_pad_takes_no_second_box(puppet):
     puppet.load()
     puppet.stand_at("pharmacy_north")

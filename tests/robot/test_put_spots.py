@@ -71,3 +71,25 @@ def test_all_work_is_within_reach_from_wherever_a_leg_may_end(ward, arrival):
                 across = math.cos(table.yaw) * dy - math.sin(table.yaw) * dx
                 assert abs(along) < table.half_length - 0.02
                 assert abs(across) < table.half_width - 0.02
+
+
+@pytest.mark.parametrize("base", [(-2.0, 0.3, 0.2), (0.5, -1.4, 0.0), (1.1, 1.9, -1.0)])
+@pytest.mark.parametrize("slot", [0, 1, -1])
+def test_the_way_to_work_ends_where_it_can_be_done(base, slot):
+    center = (0.7, 0.0, 0.83)
+    ahead, aside = mut.way_to_work(center, base, slot)
+    cosine, sine = math.cos(base[2]), math.sin(base[2])
+
+    def moved(share):
+        x, y = cosine * ahead - sine * aside, sine * ahead + cosine * aside
+        return base[0] + share * x, base[1] + share * y, base[2]
+
+    off = 0.04 / math.hypot(ahead, aside)
+    assert mut.work_goal(center, moved(1.0 - off), slot) is None
+    assert mut.work_goal(center, moved(1.0 + off), slot) is not None
+
+
+def test_the_nearest_of_several_spots_counts():
+    base = (-2.0, 0.0, 0.0)
+    assert mut.way_to_spots([LEFT, MIDDLE], base, 0) == mut.way_to_spots([MIDDLE], base, 0)
+    assert mut.way_to_spots([], base, 0) == mut.NO_WAY

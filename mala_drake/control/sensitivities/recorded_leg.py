@@ -16,7 +16,7 @@ from mala_drake.control.action_parameters import DrivingStyle, make_parameters
 from mala_drake.control.leg import LegGuide, Pose
 from mala_drake.control.model import STATE_SIZE, StateIndex
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
-from mala_drake.control.parameters import MpcParameters
+from mala_drake.control.parameters import DynamicsParameters, MpcParameters
 from mala_drake.control.reference import make_reference
 from mala_drake.control.solver import Solver
 from mala_drake.messages import Outcome, Shape
@@ -66,6 +66,7 @@ class LegRecorder:
         *,
         style: DrivingStyle,
         weights: Sequence[float],
+        dynamics: DynamicsParameters | None = None,
     ) -> RecordedLeg:
         """The leg from a state, shape (6,), to a pose.
 
@@ -75,6 +76,7 @@ class LegRecorder:
             obstacles: what the sensor sees all along.
             style: of driving.
             weights: the preferences.
+            dynamics: p^f of the model that is driven over; nominal if None.
 
         Raises:
             RuntimeError: the leg did not succeed; says how it ended.
@@ -95,7 +97,12 @@ class LegRecorder:
                 period=self._problem.period,
             )
             parameters = make_parameters(
-                style=style, weights=weights, reference=reference, obstacles=obstacles, congestion=self._congestion
+                style=style,
+                weights=weights,
+                reference=reference,
+                obstacles=obstacles,
+                congestion=self._congestion,
+                dynamics=dynamics,
             )
             solution = self._solver.solve(state, parameters, warm_start)
             steps.append(parameters)

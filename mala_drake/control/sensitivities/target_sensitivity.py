@@ -11,8 +11,9 @@ from mala_drake.control.action_parameters import style_of
 from mala_drake.control.leg import LegGuide, Pose
 from mala_drake.control.model import STATE_SIZE, StateIndex
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
+from mala_drake.control.parameters import learned_parameters
 from mala_drake.control.solver import Solver
-from mala_drake.messages import Action, Shape
+from mala_drake.messages import Action, LearnedDynamics, Shape
 from mala_drake.ward.congestion import Congestion
 
 from .analysis import SensitivityAnalysis
@@ -22,6 +23,8 @@ from .recorded_leg import KNOBS, NOMINAL, LegRecorder
 from .simulation_model import SimulationModel
 
 Vector = NDArray[np.float64]
+
+NOTHING_LEARNED = LearnedDynamics()
 
 _FORGOTTEN = 0.1  # Metres at the end of a leg by metres (radians, ...) at a state that it does not depend on.
 _TARGET = [KNOBS.index("target x"), KNOBS.index("target y")]
@@ -45,6 +48,7 @@ class TargetSensitivity:
         action: Action,
         carrying: bool,
         weights: Sequence[float],
+        learned: LearnedDynamics = NOTHING_LEARNED,
     ) -> Vector:
         """D (x, y at the end) / d (x, y of the target), shape (2, 2), by the adjoint mode.
 
@@ -55,12 +59,13 @@ class TargetSensitivity:
             action: that the leg is of.
             carrying: whether the gripper holds something.
             weights: the preferences.
+            learned: the dynamics that are simulated, where any have been learned; else the nominal ones.
 
         Raises:
             RuntimeError: the simulated leg does not succeed, or its end has no derivative.
         """
-        style = style_of(action, carrying=carrying)
-        leg = self._recorder.record(initial_state, target, obstacles, style=style, weights=weights)
+        style, dynamics = style_of(action, carrying=carrying), learned_parameters(learned)
+        leg = self._recorder.record(initial_state, target, obstacles, style=style, weights=weights, dynamics=dynamics)
         if not leg.steps:
             raise RuntimeError("was over before it began")
         model = leg.steps[0].dynamics.vector

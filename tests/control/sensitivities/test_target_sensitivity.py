@@ -11,9 +11,10 @@ import mala_drake.control.sensitivities.target_sensitivity as mut
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.action_parameters import EMPTY_HANDED
 from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
-from mala_drake.messages import Action, ActionKind
+from mala_drake.messages import Action, ActionKind, LearnedDynamics
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
 from mala_drake.ward.ward_map import Ward
@@ -35,13 +36,21 @@ def problem():
     return OptimalControlProblem()
 
 
-def sensitivity(problem, rules=None):
+def sensitivity(problem, rules=None, learned=mut.NOTHING_LEARNED):
     own = mut.TargetSensitivity(*tools(problem, rules))
-    return own(np.zeros(6), THERE, HALL.shapes, action=GO, carrying=False, weights=WEIGHTS)
+    return own(np.zeros(6), THERE, HALL.shapes, action=GO, carrying=False, weights=WEIGHTS, learned=learned)
 
 
-def test_it_is_that_of_differences_of_the_closed_loop(problem):
-    leg = LegRecorder(*tools(problem)).record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS)
+# A robot that skids, answers less and turns wide.
+LEARNED = LearnedDynamics((3.0, 0.2, 0.3, 0.8, 0.9, 0.7), (0.01,) * 6, 100)
+
+
+@pytest.mark.parametrize("learned", [mut.NOTHING_LEARNED, LEARNED], ids=["nominal", "learned"])
+def test_it_is_that_of_differences_of_the_closed_loop(problem, learned):
+    dynamics = DynamicsParameters(*learned.coefficients) if learned.updates else None
+    recorder = LegRecorder(*tools(problem))
+    leg = recorder.record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS, dynamics=dynamics)
+    np.testing.assert_array_equal(leg.steps[0].dynamics.vector, (dynamics or DynamicsParameters()).vector)
     analysis = SensitivityAnalysis(problem)
     loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))
     model, size = leg.steps[0].dynamics.vector, 1e-4
@@ -51,7 +60,7 @@ def test_it_is_that_of_differences_of_the_closed_loop(problem):
         return loop.run(leg.initial_state, schedule, model, len(leg.steps)).states[-1, :2]
 
     expected = np.stack([(end(knob, size) - end(knob, -size)) / (2 * size) for knob in range(2)], axis=1)
-    np.testing.assert_allclose(sensitivity(problem), expected, atol=1e-4)
+    np.testing.assert_allclose(sensitivity(problem, learned=learned), expected, atol=1e-4)
 
 
 def breaking(monkeypatch, at):
