@@ -39,7 +39,8 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
 def updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:
     """How often the target had been moved when the mismatch was gone for good; None if it is there at the end.
 
-    It is gone for good before the first of the last legs that all stopped at their target without mismatch.
+    It is gone for good before the first of the last legs that all stopped at their target without mismatch, with
+    everything there within reach.
     """
     first = len(legs)
     while first and legs[first - 1]["outcome"] == "success" and legs[first - 1]["mismatch"] == 0.0:

@@ -31,7 +31,8 @@ _CONDITIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         ),
         "fuzzy": (
             {"control": {"learned_targets": True, "target_evidence": "fuzzy"}},
-            "targets are learned from missing memberships alone; the model is nominal",
+            "targets are learned from missing memberships alone: of being at the place, and of having its things "
+            "within reach; the model is nominal",
         ),
         "outer_loop_only": (
             {"control": {"learned_targets": False, "learned_dynamics": False}},

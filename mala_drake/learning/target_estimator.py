@@ -9,7 +9,7 @@ by a trust region whose radius falls as 1 / n, so that any displacement can be r
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,9 @@ _LEAST_SINGULAR = 0.05  # Of the leg's sensitivity: in a direction that moves th
 _ENOUGH = 4  # Errors below the tolerance, after which a target is not refined any more.
 _SHARES = (0.75, 0.5, 0.25)  # Of a step, tried in turn until the robot can stand there.
 _EXTENSIONS = (0.0, 0.25, 0.5, 0.75)  # Metres that a step may go on over the plateau, tried before.
+_TURNS = tuple(
+    math.radians(angle) for angle in (15.0, 30.0, 45.0, 60.0, 75.0)
+)  # Of a step, to pass what is in the way.
 _MOST_UNLIKE = 0.5  # Of a sensitivity from the identity, by its greatest singular value.
 
 PLATEAU_MARGIN = 0.3
@@ -170,13 +173,11 @@ class TargetEstimator(AbstractLearner):
         step = shortest_step(evidence.demands) if evidence.offset is None else self._gauss_newton(evidence, row[_FINE])
         if not step.any():
             return after
-        lengths = self._lengths(float(np.linalg.norm(step)), evidence, updates=row[_UPDATES])
-        about = self.target(state, place) if evidence.target is None else evidence.target
-        before = np.array(about) - self._nominal[place]
-        share = self._free_share(place, before, step, lengths, is_free)
-        if share == 0.0:
+        about = np.array(self.target(state, place) if evidence.target is None else evidence.target)
+        reached = self._first_free(place, about, self._steps(step, evidence, updates=row[_UPDATES]), is_free)
+        if reached is None:
             return after
-        row[[_OFFSET_X, _OFFSET_Y]] = before + share * step
+        row[[_OFFSET_X, _OFFSET_Y]] = reached
         row[_UPDATES] += 1.0
         row[_FINE] += not evidence.demands and _is_within(self._tolerance, evidence.offset)
         return after
@@ -227,28 +228,49 @@ class TargetEstimator(AbstractLearner):
     def _radius(self, updates: float) -> float:
         return self._trust_radius / (1.0 + self._decay * updates)
 
-    def _lengths(self, length: float, evidence: TargetEvidence, *, updates: float) -> tuple[float, ...]:
-        """The lengths of a step by preference: within the trust region, beyond what is in the way, nearer.
+    def _steps(self, step: FloatArray, evidence: TargetEvidence, *, updates: float) -> Iterator[FloatArray]:
+        """Steps by preference: within the trust region, beyond what is in the way, round it, nearer.
 
-        What stands between the target and the place is only passed by a long step; a step over the plateau may go on.
+        What stands between the target and the place is only passed by a long step; a step over a plateau may go on, or
+        aside.
         """
-        farther, margin = (_EXTENSIONS, PLATEAU_MARGIN) if evidence.offset is None else (_EXTENSIONS[:1], 0.0)
+        length, straight = float(np.linalg.norm(step)), evidence.offset is not None
         # A target at the very edge of the plateau may be on it or not: a step that is longer by the margin goes on.
         radius = self._radius(updates)
-        trusted = length if length <= radius + margin else radius
-        return (trusted, *(length + more for more in farther), *(share * trusted for share in _SHARES))
+        trusted = length if length <= radius + (0.0 if straight else PLATEAU_MARGIN) else radius
+        yield trusted / length * step
+        for more in _EXTENSIONS[:1] if straight else _EXTENSIONS:
+            yield (length + more) / length * step
+        if not straight:
+            yield from _aside(step, evidence.demands)
+        for share in _SHARES:
+            yield share * trusted / length * step
 
-    def _free_share(
-        self, place: str, offset: FloatArray, step: FloatArray, lengths: tuple[float, ...], is_free: IsFree | None
-    ) -> float:
-        """How many times the step leads to where the robot can stand, 0 if none of the lengths does."""
-        nominal, length = np.array(self._nominal[place]), float(np.linalg.norm(step))
-        for tried in lengths:
-            reached = offset + tried / length * step
-            x, y = (nominal + reached).tolist()
-            if np.linalg.norm(reached) <= self._farthest and (is_free is None or is_free((x, y))):
-                return tried / length
-        return 0.0
+    def _first_free(
+        self, place: str, about: FloatArray, steps: Iterable[FloatArray], is_free: IsFree | None
+    ) -> FloatArray | None:
+        """Where the first step leads that ends where the robot can stand, as displacement from the map."""
+        nominal = np.array(self._nominal[place])
+        for step in steps:
+            displacement = about - nominal + step
+            x, y = (about + step).tolist()
+            if np.linalg.norm(displacement) <= self._farthest and (is_free is None or is_free((x, y))):
+                return np.asarray(displacement)
+        return None
+
+
+def _aside(step: FloatArray, demands: Sequence[FloatArray]) -> list[FloatArray]:
+    """Steps in other directions that meet the same demands, the shortest first."""
+    longest = float(np.linalg.norm(step)) + _EXTENSIONS[-1]
+    found = []
+    for turn in _TURNS:
+        for angle in (turn, -turn):
+            cosine, sine = math.cos(angle), math.sin(angle)
+            direction = np.array([[cosine, -sine], [sine, cosine]]) @ step / np.linalg.norm(step)
+            progress = [float(demand @ direction) / float(demand @ demand) for demand in demands]
+            if min(progress) > 0.0 and 1.0 / min(progress) <= longest:
+                found.append(direction / min(progress))
+    return sorted(found, key=lambda each: float(np.linalg.norm(each)))
 
 
 def _is_within(tolerance: float, offset: FloatArray | None) -> bool:

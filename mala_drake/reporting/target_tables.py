@@ -41,11 +41,11 @@ def target_table(results: Results, ward: Ward) -> Table:
     )
     caption = (
         "Runs that drove to the place. Gone: in how many of them the mismatch was gone for good, that is, the last "
-        "legs to the place all stopped without mismatch; updates: how often the target had been moved until then, "
-        "median (quartiles), never where it was not gone. Distances from the true place: of the place by the map, "
-        "median; of the target after the last episode, median (greatest). Delivered: of the episodes that led to the "
-        "place, before the mismatch was gone (with the one in which it went) and after. The paper reports after how "
-        "many updates a target came to rest, wherever that was."
+        "legs to the place all stopped without mismatch, with everything there within reach; updates: how often the "
+        "target had been moved until then, median (quartiles), never where it was not gone. Distances from the true "
+        "place: of the place by the map, median; of the target after the last episode, median (greatest). Delivered: "
+        "of the episodes that led to the place, before the mismatch was gone (with the one in which it went) and "
+        "after. The paper reports after how many updates a target came to rest, wherever that was."
     )
     return Table("targets", caption, headings, tuple(groups))
 
