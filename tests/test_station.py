@@ -84,7 +84,8 @@ def displaced(**control):
 
 def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
     station = mut.MakeCareStation(displaced(learned_targets=True))
-    assert open_inputs(station, [*OURS, "target_learner"]) == [("mpc_controller", "learned_dynamics")]
+    still_open = [("mpc_controller", "learned_dynamics"), ("target_learner", "learned_dynamics")]
+    assert open_inputs(station, [*OURS, "target_learner"]) == still_open
     assert_port_box(station.GetSubsystemByName("target_learner"))
     assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
 
@@ -97,6 +98,11 @@ def test_the_dynamics_learner_is_there_when_it_is_wanted(assert_port_box):
     assert_port_box(station.GetSubsystemByName("dynamics_learner"))
     states = mut.learner_states_of(station, station.CreateDefaultContext())
     assert states["dynamics_learner"] == pytest.approx(DynamicsEstimator().initial_state())
+
+
+def test_targets_are_learned_over_the_learned_dynamics():
+    station = mut.MakeCareStation(displaced(learned_targets=True, learned_dynamics=True))
+    assert open_inputs(station, [*OURS, "target_learner", "dynamics_learner"]) == []
 
 
 def test_a_displaced_place_is_elsewhere_than_the_robot_believes():

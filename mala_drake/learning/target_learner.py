@@ -9,10 +9,11 @@ from typing import Protocol
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import Context, LeafSystem, State
+from pydrake.systems.framework import Context, State
 
 from mala_drake.clock import LEARN_OFFSET, TICK
 from mala_drake.learning.abstract_learner import FloatArray
+from mala_drake.learning.learner_system import LearnerSystem
 from mala_drake.learning.target_estimator import (
     PLATEAU_MARGIN,
     MissingAtom,
@@ -79,7 +80,7 @@ class LegSensitivity(Protocol):
         """
 
 
-class TargetLearner(LeafSystem):
+class TargetLearner(LearnerSystem):
     """Learns where legs to places are to end, from what is missing at their ends.
 
     .. pydrake_system::
@@ -151,33 +152,12 @@ class TargetLearner(LeafSystem):
         self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
         self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
-        index = self.DeclareDiscreteState(learner.initial_state())
         self._watching = self.DeclareAbstractState(Value(_Watching()))
-        self.DeclareAbstractOutputPort(
-            "learned_targets",
-            lambda: Value(LearnedTargets()),
-            self._calc_learned_targets,
-            prerequisites_of_calc={self.discrete_state_ticket(index)},
-        )
+        self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=0)
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
-    def learner_state(self, context: Context) -> FloatArray:
-        """The learner's state in `context`, for a checkpoint."""
-        vector: FloatArray = context.get_discrete_state_vector().value()
-        return vector.copy()
-
-    def set_learner_state(self, context: Context, state: FloatArray, *, episode: int) -> None:  # noqa: ARG002
-        """Puts what was learned before into `context`, in which no leg has begun yet.
-
-        Args:
-            context: of this system.
-            state: of the learner, as `learner_state` gave it.
-            episode: the number of the next one; targets are learned in all alike.
-        """
-        context.SetDiscreteState(state)
-
-    def _calc_learned_targets(self, context: Context, output: Value) -> None:
-        output.set_value(self._learner.learned(self.learner_state(context)))
+    def _learned(self, context: Context) -> LearnedTargets:
+        return self._learner.learned(self.learner_state(context))
 
     def _update(self, context: Context, state: State) -> None:
         watching: _Watching = context.get_abstract_state(self._watching).get_value()
@@ -192,11 +172,11 @@ class TargetLearner(LeafSystem):
         report: ActionReport = port.Eval(context)
         if report.finished and report.sequence == action.sequence and report.sequence > watching.seen:
             watching = replace(watching, seen=report.sequence)
-            learned = self._learned(context, learned, watching, report.outcome)
+            learned = self._learned_from(context, learned, watching, report.outcome)
         state.get_mutable_discrete_state().set_value(learned)
         state.get_mutable_abstract_state(self._watching).set_value(watching)
 
-    def _learned(self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome) -> FloatArray:
+    def _learned_from(self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome) -> FloatArray:
         """The learner's state after an action that has ended."""
         action: Action = self._action.Eval(context)
         evidence = None
