@@ -110,16 +110,14 @@ class ProcessExecutor(AbstractExecutor):
 def _serve(function: Function, connection: Connection) -> None:
     """Answers calls for as long as the conducting process lives."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    while True:
-        try:
+    with suppress(EOFError, ConnectionError):  # The other end is gone, maybe since a call is under way.
+        while True:
             argument = connection.recv()
-        except EOFError:
-            return
-        try:
-            result, failure = function(argument), None
-        except Exception as error:
-            result, failure = None, why(error)
-        connection.send((result, failure))
+            try:
+                result, failure = function(argument), None
+            except Exception as error:
+                result, failure = None, why(error)
+            connection.send((result, failure))
 
 
 def _end_with_parent() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -97,6 +98,18 @@ def test_the_interrupt_of_the_keyboard_does_not_reach_the_processes():
     with mut.ProcessExecutor(eval, jobs=1) as executor:
         executor.submit("a", code)
         assert executor.next_finished().result == "alive"
+
+
+def test_an_answer_that_nobody_waits_for_any_more_is_no_error(monkeypatch):
+    monkeypatch.setattr(mut, "_end_with_parent", lambda: None)  # The process of this test has no parent of that kind.
+    conducting, serving = multiprocessing.Pipe()
+
+    def answer_too_late(number):
+        conducting.close()
+        return number
+
+    conducting.send(3)
+    mut._serve(answer_too_late, serving)
 
 
 def test_closing_ends_processes_that_are_at_work():
