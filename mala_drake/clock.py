@@ -2,7 +2,8 @@
 
 Two time scales (paper, Fig. integration_timescales): the slow one advances by planned actions, the fast one by the
 control period `TICK`. Events of one kind at the same instant see each other's *old* values, so each layer of the chain
-sense -> ground -> plan -> execute -> control acts a little after the one it listens to, within the same tick.
+sense -> ground -> plan -> execute -> control acts a little after the one it listens to, within the same tick. Layers
+that need not hear each other within a tick share a moment: every moment costs time, whatever happens then.
 """
 
 from __future__ import annotations
@@ -20,14 +21,17 @@ SENSE_OFFSET = 0.0005
 """Just after the plant's step: multiples of a tick and of the plant's step differ in the last bit, so that without it
 the estimator would now and then sample before the step of the same instant instead of after it."""
 
-WORLD_OFFSET = 0.001
-SCHEDULE_OFFSET = 0.002
+WORLD_OFFSET = SCHEDULE_OFFSET = SENSE_OFFSET
+"""The world looks at the plant's own state, the scheduler at the planner's last report, and neither at the other's news
+of the same tick."""
+
 PLAN_OFFSET = 0.003
 EXECUTE_OFFSET = 0.004
 CONTROL_OFFSET = 0.005
 METER_OFFSET = 0.006
-PATIENT_OFFSET = 0.007
-LEARN_OFFSET = 0.008
+PATIENT_OFFSET = LEARN_OFFSET = 0.007
+"""Learners hear the patient all the same: their updates are discrete, his is unrestricted, and at one instant the
+unrestricted updates come first."""
 
 ROUNDING = 1e-6
 """Slack for comparing simulation times, which are sums of ticks."""

@@ -6,21 +6,11 @@ import itertools
 
 import pytest
 from pydrake.systems.analysis import Simulator
-from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem
+from pydrake.systems.framework import Context, DiagramBuilder, DiscreteValues, LeafSystem, State
 
 from mala_drake import clock as mut
 
-CHAIN = (
-    mut.SENSE_OFFSET,
-    mut.WORLD_OFFSET,
-    mut.SCHEDULE_OFFSET,
-    mut.PLAN_OFFSET,
-    mut.EXECUTE_OFFSET,
-    mut.CONTROL_OFFSET,
-    mut.METER_OFFSET,
-    mut.PATIENT_OFFSET,
-    mut.LEARN_OFFSET,
-)
+CHAIN = (mut.SENSE_OFFSET, mut.PLAN_OFFSET, mut.EXECUTE_OFFSET, mut.CONTROL_OFFSET, mut.METER_OFFSET, mut.LEARN_OFFSET)
 
 
 class _Layer(LeafSystem):
@@ -57,6 +47,29 @@ def test_one_tick_carries_a_message_through_every_layer():
 
 def test_layers_that_act_at_one_instant_hear_each_other_a_tick_late():
     assert heard_through((0.0, 0.0), until=0.5 * mut.TICK) == 1.0
+
+
+class _Unrestricted(LeafSystem):
+    """Says in each unrestricted update that it has been."""
+
+    def __init__(self, offset: float) -> None:
+        super().__init__()
+        self.DeclareStateOutputPort("said", self.DeclareDiscreteState(1))
+        self.DeclarePeriodicUnrestrictedUpdateEvent(mut.TICK, offset, self._update)
+
+    def _update(self, _context: Context, state: State) -> None:
+        state.get_mutable_discrete_state().get_mutable_vector().SetAtIndex(0, 1.0)
+
+
+def test_a_learner_hears_the_patient_within_a_tick_although_they_share_a_moment():
+    builder = DiagramBuilder()
+    patient, learner = builder.AddSystem(_Unrestricted(mut.PATIENT_OFFSET)), builder.AddSystem(_Layer(mut.LEARN_OFFSET))
+    builder.Connect(patient.get_output_port(), learner.get_input_port())
+    builder.ExportOutput(learner.get_output_port())
+    diagram = builder.Build()
+    simulator = Simulator(diagram)
+    simulator.AdvanceTo(0.5 * mut.TICK)
+    assert diagram.get_output_port().Eval(simulator.get_context())[0] == 2.0
 
 
 def test_every_layer_has_acted_before_the_plant_moves_on():
