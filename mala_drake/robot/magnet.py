@@ -11,9 +11,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
+from mala_drake.buffered_function import BufferedFunction
 from mala_drake.messages import MagnetCommand
 from mala_drake.robot.arm_kinematics import PAD_OFFSETS
-from mala_drake.robot.held_box import box_at_pad
+from mala_drake.robot.held_boxes import boxes_at_pads
 from mala_drake.robot.item_messages import ClampedItems
 from mala_drake.robot.items import ITEM_MASS, ItemBodies, X_WI_at
 from mala_drake.robot.magnet_law import GRAVITY, MagnetLaw, Place
@@ -36,6 +37,15 @@ class _Clamps:
     state_indices: NDArray[np.intp]  # (13 k,) into the plant's state: pose, then velocity of each box.
     carrying: NDArray[np.float64]  # The generalized forces that carry the weights and do nothing else.
     resting: NDArray[np.float64]  # (13 k,): where they belong, at rest.
+
+
+@dataclass(frozen=True, slots=True)
+class _Grip:
+    """What a `MagnetCommand` holds, as arrays."""
+
+    law: BufferedFunction  # See `boxes_at_pads`.
+    arguments: NDArray[np.intp]  # Where in the plant's state its argument is.
+    results: NDArray[np.intp]  # Where in the generalized forces its result is.
 
 
 class Magnet(LeafSystem):
@@ -79,25 +89,21 @@ class Magnet(LeafSystem):
             clamp: the magnets of the dispensers; None for the default, which reaches farther.
         """
         super().__init__()
-        pad_law = pad if pad is not None else MagnetLaw()
+        self._pad = pad if pad is not None else MagnetLaw()
         self._clamp = clamp if clamp is not None else MagnetLaw(reach=CLAMP_REACH, either_way_round=False)
         self._items = {name: _floating(plant, body) for name, body in zip(items.names, items.bodies, strict=True)}
-        self._pads = tuple(box_at_pad(pad_law, index) for index in range(len(PAD_OFFSETS)))
+        # Compiled for each pad and for all of them: a function's memory, not state, like all that is kept here.
+        pads = range(len(PAD_OFFSETS))
+        self._laws = {each: boxes_at_pads(self._pad, each) for each in (*((pad,) for pad in pads), tuple(pads))}
         self._num_velocities = plant.num_velocities()
-        base = _floating(plant, robot.base)
+        self._base = _floating(plant, robot.base)
         joints = [plant.GetJointByName(name, robot.arm) for name in ARM_JOINTS]
         angles = [joint.position_start() for joint in joints]
         torques = [joint.velocity_start() for joint in joints]
-        rates = [plant.num_positions() + start for start in torques]
-        # Where in the plant's vectors the argument and the result of `box_at_pad` are.
-        self._arguments = {
-            name: np.array([*base.state, *box.state, *angles, *rates], dtype=np.intp)
-            for name, box in self._items.items()
-        }
-        self._results = {
-            name: np.array([*base.force, *box.force, *torques], dtype=np.intp) for name, box in self._items.items()
-        }
+        self._joint_states = (*angles, *(plant.num_positions() + start for start in torques))
+        self._joint_torques = tuple(torques)
         self._clamps = (ClampedItems(), self._make_clamps(ClampedItems()))
+        self._grip: tuple[tuple[tuple[str, int], ...], _Grip | None] = ((), None)
         self._magnet_port = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._clamped_port = self.DeclareAbstractInputPort("clamped", Value(ClampedItems()))
         self._state_port = self.DeclareVectorInputPort("state", plant.num_multibody_states())
@@ -113,8 +119,11 @@ class Magnet(LeafSystem):
         state = self._state_port.Eval(context)
         generalized = output.get_mutable_value()
         self._hold_clamped(state, self._clamps_of(self._clamped_port.Eval(context)), generalized)
-        for item, pad in self._magnet_port.Eval(context).held:
-            self._hold_at_pad(state, item, pad, generalized)
+        grip = self._grip_of(self._magnet_port.Eval(context))
+        if grip is not None:
+            grip.law.arguments[0][:, 0] = state.take(grip.arguments)
+            grip.law()
+            generalized[grip.results] += grip.law.results[0][:, 0]
 
     def _clamps_of(self, message: ClampedItems) -> _Clamps:
         """The message as arrays: kept from step to step, since it changes only when a box is taken or brought back."""
@@ -149,12 +158,25 @@ class Magnet(LeafSystem):
             torque, force = self._clamp.wrench(boxes.reshape(-1, _BODY_STATE)[row].tolist(), clamps.places[row])
             generalized[clamps.forces[row]] = (*torque, *force)
 
-    def _hold_at_pad(self, state: NDArray[np.float64], item: str, pad: int, generalized: NDArray[np.float64]) -> None:
-        self._item(item)
-        at_pad = self._pads[pad]
-        at_pad.arguments[0][:, 0] = state.take(self._arguments[item])
-        at_pad()
-        generalized[self._results[item]] += at_pad.results[0][:, 0]
+    def _grip_of(self, message: MagnetCommand) -> _Grip | None:
+        """The message as arrays, kept from step to step likewise; None where nothing is held."""
+        if message.held != self._grip[0]:
+            self._grip = (message.held, self._make_grip(message))
+        return self._grip[1]
+
+    def _make_grip(self, message: MagnetCommand) -> _Grip | None:
+        if not message.held:
+            return None
+        boxes, pads = [self._item(name) for name, _ in message.held], tuple(pad for _, pad in message.held)
+        if pads not in self._laws:
+            self._laws[pads] = boxes_at_pads(self._pad, pads)
+        states = [index for box in boxes for index in box.state]
+        forces = [index for box in boxes for index in box.force]
+        return _Grip(
+            self._laws[pads],
+            arguments=np.array([*self._base.state, *states, *self._joint_states], dtype=np.intp),
+            results=np.array([*self._base.force, *forces, *self._joint_torques], dtype=np.intp),
+        )
 
     def _item(self, name: str) -> _Floating:
         """The box `name` in the plant's vectors.
