@@ -182,12 +182,10 @@ class MpcController(LeafSystem):
             target = self._target(context, driving.action.place)
             if target is None:
                 return self._finish(driving, robot_state, Outcome.BLOCKED, f"no place {driving.action.place!r}")
-            driving = replace(driving, leg=self._guide.begin(target, robot_state, seen))
+            leg = self._guide.begin(target, robot_state, seen)
         else:
-            driving = replace(driving, leg=self._guide.advance(driving.leg, robot_state, seen))
-        driving = replace(driving, bad_states=0)
-        leg = driving.leg
-        assert leg is not None
+            leg = self._guide.advance(driving.leg, robot_state, seen)
+        driving = replace(driving, leg=leg, bad_states=0)
         if leg.outcome is not Outcome.RUNNING or leg.track is None:
             return self._finish(driving, robot_state, leg.outcome, leg.detail)
         return self._solve(context, driving, leg, robot_state)
@@ -223,24 +221,25 @@ class MpcController(LeafSystem):
         started = time.perf_counter()
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)
         self.solve_seconds.append(time.perf_counter() - started)
+        usable = solution.success or _is_usable(solution)
+        stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage) if usable else 0.0
         # A solve that stopped early counts as failed, also where its controls are good enough to drive with.
         report = replace(
             driving.report,
             steps=leg.steps,
             solves=driving.report.solves + 1,
             failures=driving.report.failures + (not solution.success),
+            closed_loop_cost=driving.report.closed_loop_cost + stage_cost,
         )
-        driving = replace(driving, report=report)
-        if not solution.success and not _is_usable(solution):
-            return self._after_failed_solve(driving, robot_state, solution)
-        stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage)
+        if not usable:
+            return self._after_failed_solve(replace(driving, report=report), robot_state, solution)
         return replace(
             driving,
-            control=tuple(float(value) for value in solution.controls[0]),
+            control=tuple(solution.controls[0].tolist()),
             warm_start=solution.shifted(),
-            predicted=PredictedTrajectory(tuple(tuple(map(float, row)) for row in solution.states)),
+            predicted=PredictedTrajectory(tuple(map(tuple, solution.states.tolist()))),
             terminal=parameters.terminal,
-            report=replace(report, closed_loop_cost=report.closed_loop_cost + stage_cost),
+            report=report,
             bad_solves=0,
         )
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -71,12 +72,22 @@ DEFAULT_TRANSLATION = CostTranslation()
 
 
 def translate(weights: Sequence[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Q's and R's diagonals, shapes (6,) and (3,), for `weights` in the order of `FEATURES`, by the default gains.
+    """Q's and R's diagonals for `weights` in the order of `FEATURES`, by the default gains.
+
+    Shapes (6,) and (3,), not writeable.
 
     Raises:
         BadInput: the weights are not five non-negative numbers that sum to one.
     """
-    return DEFAULT_TRANSLATION(weights)
+    return _translated(tuple(weights))
+
+
+@lru_cache(maxsize=1)  # The controller asks for the same weights at every tick of an episode.
+def _translated(weights: tuple[float, ...]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    diagonals = DEFAULT_TRANSLATION(weights)
+    for diagonal in diagonals:
+        diagonal.setflags(write=False)
+    return diagonals
 
 
 def _checked(weights: Sequence[float]) -> NDArray[np.float64]:

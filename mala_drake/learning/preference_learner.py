@@ -103,8 +103,6 @@ class PreferenceLearner(LearnerSystem):
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         ratings = self._ratings.Eval(context)
-        state = self.learner_state(context)
         if ratings.sequence > self.seen(context):
-            state = self._learner.update(state, ratings=ratings.values, features=ratings.features)
-        seen = max(ratings.sequence, self.seen(context))
-        discrete_state.set_value(np.append(state, float(seen)))
+            state = self._learner.update(self.learner_state(context), ratings=ratings.values, features=ratings.features)
+            discrete_state.set_value(np.append(state, float(ratings.sequence)))

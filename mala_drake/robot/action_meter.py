@@ -36,7 +36,7 @@ class _Evaluating(Message):
 
     action: Action = Action()
     weights: tuple[float, ...] = (0.2,) * 5
-    place_error: float = 0.0
+    place_error: float = 1.0
     approach_error: float = 0.0
     closed_loop_cost: float | None = None
     ended: ActionEvaluation = ActionEvaluation()
@@ -76,7 +76,8 @@ class ActionMeter(LeafSystem):
     looks of a dish to its assembling.
 
     The events of one tick: at the controller's moment a leg ends; at the planner's, a tick later, the next action
-    begins. What belongs to an action is therefore kept, tick by tick, while it is under way.
+    begins. What belongs to an action is therefore kept, tick by tick, while it is under way, and of a leg once it has
+    ended.
     """
 
     def __init__(
@@ -158,9 +159,11 @@ class ActionMeter(LeafSystem):
         if action.sequence != state.action.sequence:
             preferences: Preferences = self._preferences.Eval(context)
             state = _Evaluating(action, preferences.planning, ended=state.ended)
-        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
         leg: ActionReport = self._leg_report.Eval(context)
         is_leg = leg.sequence == action.sequence
+        if is_leg and not leg.finished:
+            return state  # What counts is where and how it ends.
+        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
         # Where the robot's place is not known it is not the expected one.
         place_error = mismatch.error if mismatch.place == action.place else 1.0
         closed_loop_cost = leg.closed_loop_cost if is_leg else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mala_drake.clock import PLANT_STEP
 from mala_drake.robot.robot_parameters import NOMINAL, RobotParameters
@@ -20,6 +20,13 @@ class DriveLaw:
     """
 
     parameters: RobotParameters = NOMINAL
+    _per_wheel: float = field(init=False, repr=False)  # Torque of a wheel per forward acceleration.
+    _per_turn: float = field(init=False, repr=False)  # The same per yaw acceleration.
+
+    def __post_init__(self) -> None:
+        p = self.parameters
+        object.__setattr__(self, "_per_wheel", 0.5 * p.effective_mass * p.wheel_radius)
+        object.__setattr__(self, "_per_turn", 0.5 * p.effective_yaw_inertia * p.wheel_radius / p.half_track)
 
     def torques(
         self,
@@ -50,9 +57,8 @@ class DriveLaw:
         if not (powered and math.isfinite(propulsion + brake + yaw_acceleration)):
             propulsion, brake, yaw_acceleration = 0.0, p.brake_limit, 0.0
         brake = min(max(brake, 0.0), p.brake_limit)
-        radius, limit = p.wheel_radius, p.torque_limit
-        per_wheel = 0.5 * p.effective_mass * radius
-        grip = _BRAKE_SOFTNESS * per_wheel * radius / PLANT_STEP
+        per_wheel, limit = self._per_wheel, p.torque_limit
+        grip = _BRAKE_SOFTNESS * per_wheel * p.wheel_radius / PLANT_STEP
         bound = per_wheel * brake
         if propulsion == 0.0 and yaw_acceleration == 0.0 and brake > 0.0:
             # The rolling resistance brakes too; the parking brake adds what is missing.
@@ -61,8 +67,7 @@ class DriveLaw:
             return -_clip(grip * left_speed, left_bound), -_clip(grip * right_speed, right_bound)
         forward = per_wheel * _clip(propulsion, p.propulsion_limit)
         forward -= _clip(grip * 0.5 * (left_speed + right_speed), bound)
-        turn = _clip(yaw_acceleration, p.yaw_acceleration_limit)
-        turn *= 0.5 * p.effective_yaw_inertia * radius / p.half_track
+        turn = _clip(yaw_acceleration, p.yaw_acceleration_limit) * self._per_turn
         return (
             _clip(forward - turn + p.wheel_damping * left_speed, limit),
             _clip(forward + turn + p.wheel_damping * right_speed, limit),

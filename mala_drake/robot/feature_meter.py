@@ -225,13 +225,13 @@ class FeatureMeter(LeafSystem):
         )
 
     def _calc_action_features(self, context: Context, output: Value) -> None:
-        sums = _Sums(context.get_discrete_state(self._sums).value())
         marks = ActionMarks(context.get_discrete_state(self._marks).value())
         report: TaskReport = self._task_report.Eval(context)
         action = report.last_action
         if action.sequence == 0 or action.sequence != marks.finished:
             output.set_value(ActionFeatures())
             return
+        sums = _Sums(context.get_discrete_state(self._sums).value())
         handing_over = _handing_over(action)
         pose_error = 0.0 if handing_over is None else sums.approach_error - presentation_error(handing_over.dish)
         measured = {name: float(getattr(marks, name)) for name in SUMMED}

@@ -10,7 +10,7 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from mala_drake.errors import BadInput
 from mala_drake.robot.plant import CareRobot
-from mala_drake.robot.plant_state import BASE_VELOCITIES, PLANT_STATE_SIZE, planar_state_of
+from mala_drake.robot.plant_state import BASE_VELOCITIES, OMEGA_Z, PLANT_STATE_SIZE, V_X, V_Y, yaw_of
 from mala_drake.robot.robot_parameters import NOMINAL, RobotParameters
 
 YAW_COUPLING = 0.2
@@ -68,15 +68,17 @@ class GyroscopicEffect(LeafSystem):
         )
 
     def _calc_generalized_force(self, context: Context, output: BasicVector) -> None:
-        _, _, yaw, v_x, _, omega = planar_state_of(self._plant_state.Eval(context).tolist())
-        coupling = v_x * omega
+        state = self._plant_state.Eval(context).tolist()
+        yaw = yaw_of(state)
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        coupling = (cos * state[V_X] + sin * state[V_Y]) * state[OMEGA_Z]
         force = self._force_gain * coupling
         # All other entries are 0, as in the port's model vector.
         output.get_mutable_value()[self._base] = (
             0.0,
             0.0,
             self._torque_gain * coupling,
-            -force * math.sin(yaw),
-            force * math.cos(yaw),
+            -force * sin,
+            force * cos,
             0.0,
         )

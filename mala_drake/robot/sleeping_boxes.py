@@ -100,7 +100,7 @@ class SleepingBoxes:
         disturbed = ~_far(places, state[self._robot][None, :], WAKING_DISTANCE)
         if loose.any():
             disturbed |= ~_far(places, places[loose], DISTURBING_DISTANCE)
-        if np.array_equal(disturbed, ~self._asleep):
+        if (disturbed ^ self._asleep).all():
             return
         for index in np.flatnonzero(disturbed & self._asleep):
             self._wake(int(index))
@@ -149,5 +149,5 @@ def _planar_positions(bodies: Sequence[RigidBody]) -> NDArray[np.intp]:
 def _far(places: NDArray[np.float64], others: NDArray[np.float64], distance: float) -> NDArray[np.bool_]:
     """Which of the places (n, 2) are farther than `distance` from all of the others (m, 2); none where it is NaN."""
     offsets = places[:, None, :] - others
-    far: NDArray[np.bool_] = np.all(np.hypot(offsets[..., 0], offsets[..., 1]) > distance, axis=1)
+    far: NDArray[np.bool_] = ((offsets * offsets).sum(axis=2) > distance * distance).all(axis=1)
     return far

@@ -216,7 +216,7 @@ class World(LeafSystem):
 def _outcome(world: WorldState, newest: Action, report: ActionReport) -> Outcome:
     """How the world's current in-place action has just ended, RUNNING if it has not (or had not begun)."""
     current = world.action.sequence
-    if read_action(world.action) is None or world.concluded >= current:
+    if world.concluded >= current or read_action(world.action) is None:
         return Outcome.RUNNING
     if report.sequence == current and report.finished:
         return report.outcome

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import cache
 from types import MappingProxyType
 
 from mala_drake.ward.dishes import DISHES
@@ -176,6 +177,11 @@ def in_place_action(name: str, arguments: Sequence[str] = ()) -> InPlaceAction |
         name: of the action in its domain.
         arguments: of the action; they tell which ingredient is collected, and a meal from a delivery of medicine.
     """
+    return _read(name, tuple(arguments))
+
+
+@cache  # Ground actions are few, and many systems read the one under way at every tick.
+def _read(name: str, arguments: tuple[str, ...]) -> InPlaceAction | None:
     dish = next((each for each in arguments if each in DISHES), "")
     if name in _DELIVER:
         return InPlaceAction(Verb.SERVE, dish=dish) if dish else InPlaceAction(Verb.DELIVER)

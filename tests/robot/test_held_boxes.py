@@ -1,4 +1,4 @@
-"""The compiled magnet of a pad, against the laws it is made of, evaluated on floats."""
+"""The compiled magnets of the pads, against the laws it is made of, evaluated on floats."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mala_drake.robot import held_box as mut
+from mala_drake.robot import held_boxes as mut
 from mala_drake.robot.arm_kinematics import PAD_RADIUS
 from mala_drake.robot.gripper_motion import gripper_motion
 from mala_drake.robot.magnet_law import GRAVITY, MagnetLaw, Place
@@ -21,11 +21,16 @@ small = st.floats(-0.06, 0.06)
 
 @pytest.fixture(scope="module")
 def duts():
-    return [mut.box_at_pad(LAW, pad) for pad in (0, 1)]
+    return [mut.boxes_at_pads(LAW, [pad]) for pad in (0, 1)]
 
 
-def _evaluate(dut, box):
-    dut.arguments[0][:, 0] = [*BASE, *box, *ANGLES, *RATES]
+@pytest.fixture(scope="module")
+def both():
+    return mut.boxes_at_pads(LAW, [0, 1])
+
+
+def _evaluate(dut, *boxes):
+    dut.arguments[0][:, 0] = [*BASE, *(value for box in boxes for value in box), *ANGLES, *RATES]
     dut()
     return dut.results[0][:, 0].copy()
 
@@ -48,6 +53,16 @@ def test_it_is_wrench_and_reaction_of_the_laws(duts, pad, offset, turn):
     opposite = (tuple(-value for value in torque), tuple(-value for value in force))
     on_base, on_joints = motion.generalized_force(tuple(box[4:7]), *opposite)
     assert _evaluate(duts[pad], box) == pytest.approx([*on_base, *torque, *force, *on_joints], abs=1e-9)
+
+
+@given(offsets=st.lists(st.tuples(small, small, small), min_size=2, max_size=2), turn=st.floats(-2.0, 2.0))
+def test_the_robot_feels_two_boxes_as_the_sum_of_each_to_the_last_bit(duts, both, offsets, turn):
+    boxes = [_box_near(pad, offset, turn) for pad, offset in enumerate(offsets)]
+    first, second = (_evaluate(dut, box) for dut, box in zip(duts, boxes, strict=True))
+    together = _evaluate(both, *boxes)
+    assert together[:6].tolist() == (first[:6] + second[:6]).tolist()
+    assert together[6:18].tolist() == [*first[6:12], *second[6:12]]
+    assert together[18:].tolist() == (first[12:] + second[12:]).tolist()
 
 
 @pytest.mark.parametrize("pad", [0, 1])
