@@ -41,15 +41,10 @@ class CareRobot:
     hull: GeometryId  # The collision geometry that bumps into things.
 
 
-def MakeCarePlant(builder: DiagramBuilder, *, step: float = PLANT_STEP) -> tuple[MultibodyPlant, SceneGraph]:
-    """Adds the discrete plant of the project and its scene graph: point contact, the `lagged` approximation.
-
-    Args:
-        builder: gets both systems.
-        step: period of the plant, seconds.
-    """
+def MakeCarePlant(builder: DiagramBuilder) -> tuple[MultibodyPlant, SceneGraph]:
+    """Adds the discrete plant of the project and its scene graph: point contact, the `lagged` approximation."""
     config = MultibodyPlantConfig(
-        time_step=step,
+        time_step=PLANT_STEP,
         discrete_contact_approximation="lagged",
         contact_model="point",
         # Keeping a sample of every output at each step would cost a fifth of the time; the few that are asked for are
