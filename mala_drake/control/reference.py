@@ -117,12 +117,14 @@ def make_reference(
 def needs_turn(track: Track, yaw: float, length: float, *, turning: bool) -> bool:
     """Whether the robot looks so far away from the path that it turns on the spot, with hysteresis."""
     end = track.path.length
-    if length >= end:
-        return False
-    error = abs(math.remainder(track.heading(length) - yaw, math.tau))
+    return length < end and _looks_away(track.heading(length) - yaw, end, turning)
+
+
+def _looks_away(error: float, end: float, turning: bool) -> bool:
+    """The same short of the path's `end`, by the difference of the yaws."""
     # On a short way back to the target a small angle already misses it.
     wide = _TURN_FIRST if end > 1.0 else 2 * _ALIGNED
-    return error > (_ALIGNED if turning else wide)
+    return abs(math.remainder(error, math.tau)) > (_ALIGNED if turning else wide)
 
 
 class _Virtual:
@@ -130,6 +132,7 @@ class _Virtual:
         self._track = track
         self._end = track.path.length
         self._length = length
+        self._heading = track.heading(length)
         self._turning = turning
         forward = float(state[StateIndex.FORWARD_VELOCITY])
         self._yaw = float(state[StateIndex.YAW])
@@ -142,14 +145,16 @@ class _Virtual:
         return *self._track.position(self._length), self._yaw, speed, 0.0, self._yaw_rate
 
     def advance(self, period: float) -> None:
-        self._turning = needs_turn(self._track, self._yaw, self._length, turning=self._turning)
+        away = self._heading - self._yaw
+        self._turning = self._length < self._end and _looks_away(away, self._end, self._turning)
         at_end = self._length >= self._end - 1e-6
         ceiling = 0.0 if self._turning or at_end else self._ceiling_ahead(period)
         slowest, fastest = self._speed - DECELERATION * period, self._speed + ACCELERATION * period
         speed = max(0.0, min(max(ceiling, slowest), fastest))
         self._length = min(self._length + 0.5 * (self._speed + speed) * period, self._end)
         self._speed = speed
-        wanted = self._track.target_yaw if at_end else self._track.heading(self._length)
+        self._heading = self._track.heading(self._length)
+        wanted = self._track.target_yaw if at_end else self._heading
         step = TURN_RATE * period if self._turning or at_end else 2 * TURN_RATE * period
         error = math.remainder(wanted - self._yaw, math.tau)
         self._yaw += max(-step, min(step, error))

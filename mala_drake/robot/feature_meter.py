@@ -180,10 +180,10 @@ class FeatureMeter(LeafSystem):
             return
         came_from = (sums.x, sums.y) if math.dist((sums.x, sums.y), (x, y)) <= FASTEST * elapsed else (x, y)
         middles, lengths = sample([came_from, (x, y)])
-        speeds = np.full(len(lengths), lengths.sum() / elapsed)
+        speed = lengths.sum() / elapsed
         time = elapsed / len(lengths)  # All pieces of one chord are equally long.
-        sums.risk += sums.risk_scale * self._rates.risk_rate(middles, speeds).sum() * time
-        sums.discomfort += self._rates.discomfort_rate(middles, speeds).sum() * time
+        sums.risk += sums.risk_scale * self._rates.risk_rate(middles, speed).sum() * time
+        sums.discomfort += self._rates.discomfort_rate(middles, speed).sum() * time
         handing_over = _handing_over(self._action.Eval(context))
         if handing_over is not None:
             sums.approach_error = approach_error((x, y, yaw), self._ideal) + presentation_error(handing_over.dish)

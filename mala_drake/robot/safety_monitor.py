@@ -85,7 +85,7 @@ class SafetyMonitor(LeafSystem):
         state = discrete_state.get_mutable_vector(self._watch)
         watch = state.value().tolist()
         plant_state = self._plant_state.Eval(context)
-        x, y = float(plant_state[X]), float(plant_state[Y])
+        x, y = plant_state.item(X), plant_state.item(Y)
         moved = math.hypot(x - watch[_ANCHOR_X], y - watch[_ANCHOR_Y])
         if watch[_ANCHOR_CLEARANCE] - moved >= max(watch[_MIN_CLEARANCE], _NEAR):
             return

@@ -69,7 +69,7 @@ class FeatureRates:
         self._bed = ShapeDistances(beds) if beds else None
 
     def risk_rate(self, points: ArrayLike, speeds: ArrayLike) -> NDArray[np.float64]:
-        """Risk per second at `points` (..., 2) and `speeds` (...)."""
+        """Risk per second at `points` (..., 2) and `speeds` (...), or one speed for all."""
         return self._congestion.level(points) * np.abs(np.asarray(speeds)) / RISK_LENGTH
 
     def discomfort_rate(self, points: ArrayLike, speeds: ArrayLike) -> NDArray[np.float64]:
