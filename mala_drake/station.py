@@ -338,6 +338,7 @@ class _StationBuilder:
         self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter, self._action_meter)
         self._wire(self._controller, "leg_report", self._task_planner, self._action_meter, *targets)
         self._wire(self._executor, "in_place_report", self._task_planner, self._world, self._grounding, *targets)
+        self._wire(self._executor, "in_place_report", self._action_meter)
         self._wire(self._executor, "magnet", self._magnet, self._world, self._controller, *targets)
         self._wire(self._executor, "arm_target", self._arm)
         self._wire(self._executor, "charge_rates", self._battery)

@@ -53,6 +53,7 @@ class ActionMeter(LeafSystem):
         - task_report
         - action
         - leg_report
+        - in_place_report
         - place_mismatch
         - robot_state
         - preferences
@@ -75,9 +76,9 @@ class ActionMeter(LeafSystem):
     in the planning domains, the approach error belongs to the leg to the bedside, of the pose that it ends in, and the
     looks of a dish to its assembling.
 
-    The events of one tick: at the controller's moment a leg ends; at the planner's, a tick later, the next action
-    begins. What belongs to an action is therefore kept, tick by tick, while it is under way, and of a leg once it has
-    ended.
+    The events of one tick: at the executors' moments an action ends; at the planner's, a tick later, the next one
+    begins. What an action has come to is therefore taken down when its report says that it has ended, and kept until
+    the planner has drawn the consequences.
     """
 
     def __init__(
@@ -102,6 +103,7 @@ class ActionMeter(LeafSystem):
         self._task_report = self.DeclareAbstractInputPort("task_report", Value(TaskReport()))
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
         self._leg_report = self.DeclareAbstractInputPort("leg_report", Value(ActionReport()))
+        self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._place_mismatch = self.DeclareAbstractInputPort("place_mismatch", Value(PlaceMismatch()))
         self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
@@ -159,22 +161,18 @@ class ActionMeter(LeafSystem):
         if action.sequence != state.action.sequence:
             preferences: Preferences = self._preferences.Eval(context)
             state = _Evaluating(action, preferences.planning, ended=state.ended)
-        leg: ActionReport = self._leg_report.Eval(context)
-        is_leg = leg.sequence == action.sequence
-        if is_leg and not leg.finished:
-            return state  # What counts is where and how it ends.
-        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
-        # Where the robot's place is not known it is not the expected one.
-        place_error = mismatch.error if mismatch.place == action.place else 1.0
-        closed_loop_cost = leg.closed_loop_cost if is_leg else None
-        approach = self._approach_error(context, action)
-        if (place_error, closed_loop_cost, approach) == (
-            state.place_error,
-            state.closed_loop_cost,
-            state.approach_error,
-        ):
+        is_leg = action.kind is ActionKind.MOVE
+        report: ActionReport = (self._leg_report if is_leg else self._in_place_report).Eval(context)
+        if report.sequence != action.sequence or not report.finished:
             return state
-        return replace(state, place_error=place_error, closed_loop_cost=closed_loop_cost, approach_error=approach)
+        mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
+        return replace(
+            state,
+            # Where the robot's place is not known it is not the expected one.
+            place_error=mismatch.error if mismatch.place == action.place else 1.0,
+            closed_loop_cost=report.closed_loop_cost if is_leg else None,
+            approach_error=self._approach_error(context, action),
+        )
 
     def _approach_error(self, context: Context, action: Action) -> float:
         """That of the pose which a leg to a bedside has come to; 0 of any other action."""

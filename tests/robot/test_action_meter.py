@@ -44,6 +44,7 @@ class Stage:
             "task_report": TaskReport(),
             "action": Action(),
             "leg_report": ActionReport(),
+            "in_place_report": ActionReport(),
             "place_mismatch": PlaceMismatch(),
             "preferences": Preferences(planning=WEIGHTS),
             "action_features": ActionFeatures(),
@@ -117,7 +118,9 @@ def test_as_predicted_and_as_expected_means_no_mismatch(stage):
 
 
 def test_an_action_in_place_has_no_closed_loop_cost_and_stands_where_it_should(stage):
-    stage.tick(action=WORK, place_mismatch=PlaceMismatch("supply_A", 0.0), leg_report=ActionReport())
+    stage.tick(action=WORK, place_mismatch=PlaceMismatch("supply_A", 0.5), in_place_report=ActionReport(2))
+    done = ActionReport(2, Outcome.SUCCESS)
+    stage.tick(place_mismatch=PlaceMismatch("supply_A", 0.0), in_place_report=done)
     evaluation = stage.tick(**ended(WORK, duration=5.0), action=Action(3, ActionKind.MOVE, "go", place="home"))
     assert evaluation.closed_loop_cost is None
     assert evaluation.state_mismatch == 0.0
@@ -180,7 +183,8 @@ def test_the_looks_of_a_dish_belong_to_its_assembling(stage):
 )
 def test_the_approach_error_belongs_to_the_leg_to_the_bedside(stage, outcome, pose, expected):
     approach = Action(1, ActionKind.MOVE, "approach_left_to_bed", ("robot1", "home"), place="patient_bed_left")
-    stage.tick(pose=pose, action=approach, preferences=Preferences(planning=(0.0, 0.0, 0.0, 0.0, 1.0)))
+    preferences = Preferences(planning=(0.0, 0.0, 0.0, 0.0, 1.0))
+    stage.tick(pose=pose, action=approach, preferences=preferences, leg_report=ActionReport(1, outcome))
     deliver = Action(2, ActionKind.IN_PLACE, "deliver_on_bedside_table_left", place="patient_bed_left")
     evaluation = stage.tick(pose=pose, **ended(approach, outcome=outcome, duration=30.0), action=deliver)
     assert evaluation.external_reward == pytest.approx(-expected)
