@@ -119,7 +119,7 @@ class ControlConfig:
     waypoint_iterations: int = 50  # Control steps to the next waypoint.
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
     learned_targets: bool = False  # Whether targets move to where the mismatch after their legs vanishes.
-    target_evidence: str = "fuzzy"  # By which: fuzzy (the missing membership), or geometric (also the place as seen).
+    target_evidence: str = "fuzzy"  # By what: fuzzy (missing memberships), or geometric (also the place as seen).
     learned_dynamics: bool = False  # Whether the controller's model is corrected by how the robot really drives.
 
     @property

@@ -43,6 +43,18 @@ def updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:
     everything there within reach.
     """
     first = len(legs)
-    while first and legs[first - 1]["outcome"] == "success" and legs[first - 1]["mismatch"] == 0.0:
+    while first and not is_mismatch(legs[first - 1]):
         first -= 1
-    return sum(bool(leg["moved"]) for leg in legs[:first]) if first < len(legs) else None
+    reached = any(leg["outcome"] == "success" for leg in legs[first:])
+    return sum(bool(leg["moved"]) for leg in legs[:first]) if reached else None
+
+
+def is_mismatch(leg: dict[str, Any]) -> bool:
+    """Whether a leg, or an action, found something missing at its target.
+
+    A leg that was not driven to its end tells nothing about that.
+    """
+    return bool(leg["outcome"] in _ENDED_THERE and leg["mismatch"] > 0.0)
+
+
+_ENDED_THERE = ("success", "out_of_reach")

@@ -10,7 +10,7 @@ from typing import Any
 from mala_drake.configuration import typed
 from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_record import EpisodeRecord
-from mala_drake.experiments.target_summary import updates_until_gone
+from mala_drake.experiments.target_summary import is_mismatch, updates_until_gone
 from mala_drake.reporting.paper_results import PAPER_TARGET_UPDATES
 from mala_drake.reporting.results import Results, Run
 from mala_drake.scenario import Scenario
@@ -61,7 +61,7 @@ class TargetRun:
         counted, learned = 0, len(episodes)
         entries = self.entries
         for number, record in enumerate(episodes):
-            if not any(entry["mismatch"] > 0.0 for entry in entries[counted:]):
+            if not any(is_mismatch(entry) for entry in entries[counted:]):
                 learned = number
                 break
             counted += len(_of_place(record, self.place))

@@ -60,3 +60,16 @@ def test_a_mismatch_that_comes_back_was_not_gone():
     assert mut.updates_until_gone(legs) is None
     assert mut.updates_until_gone([*legs, leg("stove", 0.0, False, 0.7)]) == 2
     assert mut.updates_until_gone([]) is None
+
+
+def test_a_leg_that_was_not_driven_to_its_end_is_no_mismatch_and_finds_nothing():
+    found = [leg("stove", 0.5, True, 0.7), leg("stove", 0.0, False, 0.7)]
+    stuck = leg("stove", 1.0, False, 0.7, "waypoint_allocation")
+    assert mut.updates_until_gone([*found, stuck]) == 1
+    assert mut.updates_until_gone([*found[:1], stuck]) is None
+
+
+def test_what_is_out_of_reach_is_a_mismatch():
+    legs = [leg("stove", 0.0, False, 0.9), leg("stove", 0.1, True, 0.6, "out_of_reach")]
+    assert mut.updates_until_gone(legs) is None
+    assert mut.updates_until_gone([*legs, leg("stove", 0.0, False, 0.6)]) == 1

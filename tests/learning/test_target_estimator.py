@@ -146,6 +146,15 @@ def test_what_stands_at_the_edge_of_the_plateau_is_passed_if_the_mismatch_alone_
     assert legs.drive() == 0.0
 
 
+def test_a_step_goes_aside_where_the_way_on_is_taken():
+    x, y = PLACES["pantry"]
+    legs = Legs((2.0, 0.0), is_free=lambda point: not (1.2 < point[0] - x < 4.0 and abs(point[1] - y) < 0.6))
+    legs.drive()
+    aside = legs.target - (x, y)
+    assert aside[0] >= 1.3 - 1e-9  # As far towards the place as straight on.
+    assert 0.6 <= abs(aside[1]) <= 1.3 * np.tan(np.radians(30.0)) + 1e-9  # And no farther aside than needed.
+
+
 def test_what_stands_between_the_target_and_the_place_is_passed_beyond_the_trust_radius():
     x = PLACES["pantry"][0]
     legs = Legs((3.3, 0.0), is_free=lambda point: not 0.9 < point[0] - x < 3.0, geometric=True)
