@@ -30,8 +30,8 @@ EXECUTE_OFFSET = 0.004
 CONTROL_OFFSET = 0.005
 METER_OFFSET = 0.006
 PATIENT_OFFSET = LEARN_OFFSET = 0.007
-"""Learners hear the patient all the same: their updates are discrete, his is unrestricted, and at one instant the
-unrestricted updates come first."""
+"""Who learns from the patient hears him all the same: that update is discrete, his is unrestricted, and at one instant
+the unrestricted updates come first."""
 
 ROUNDING = 1e-6
 """Slack for comparing simulation times, which are sums of ticks."""
