@@ -88,9 +88,9 @@ class _Rig:
         self._sleep = sleep
         self._builder = DiagramBuilder()
         self._plant, self._scene_graph = MakeCarePlant(self._builder)
-        self._robot = AddCareRobot(self._plant, self._scene_graph)
+        self._robot = AddCareRobot(self._plant, self._scene_graph, visible=False)
         AddFloor(self._plant)
-        bodies = AddItems(self._plant, self._scene_graph, items, self._robot)
+        bodies = AddItems(self._plant, self._scene_graph, items, self._robot, visible=False)
         self._bodies = bodies.bodies
         self._carried = bodies.bodies[:carried]
         self._plant.Finalize()

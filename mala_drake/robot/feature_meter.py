@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,24 +36,26 @@ FASTEST = 3.0
 
 _NAME = "feature_meter"
 
-_Sums = namedview(
-    "_Sums",
-    [
-        "task",  # Sequence of the task that is measured, 0 before the first one.
-        "closed",  # 1 once it is finished.
-        "risk_scale",  # Of the congestion that there really is, to that of the map.
-        "duration",  # Seconds.
-        "risk",
-        "charge_used",
-        "discomfort",
-        "approach_error",  # Of the newest hand-over; the worst before there is one.
-        "begun",  # Time at which it began, seconds.
-        "charge_at_start",
-        "charge",  # At the newest tick, like the position.
-        "x",
-        "y",
-    ],
-)
+
+class _Numbers(NamedTuple):
+    """The sums as plain numbers, to read many of them at every tick."""
+
+    task: float  # Sequence of the task that is measured, 0 before the first one.
+    closed: float  # 1 once it is finished.
+    risk_scale: float  # Of the congestion that there really is, to that of the map.
+    duration: float  # Seconds.
+    risk: float
+    charge_used: float
+    discomfort: float
+    approach_error: float  # Of the newest hand-over; the worst before there is one.
+    begun: float  # Time at which it began, seconds.
+    charge_at_start: float
+    charge: float  # At the newest tick, like the position.
+    x: float
+    y: float
+
+
+_Sums = namedview("_Sums", list(_Numbers._fields))
 
 
 class FeatureMeter(LeafSystem):
@@ -169,21 +171,24 @@ class FeatureMeter(LeafSystem):
         sums.x, sums.y = self._robot_state.Eval(context)[:2]
 
     def _integrate(self, context: Context, sums: Any) -> None:
-        elapsed = context.get_time() - sums.begun - sums.duration
+        before = _Numbers._make(sums[:].tolist())
+        elapsed = context.get_time() - before.begun - before.duration
         x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
         charge = self._charge.Eval(context).item()
-        sums.duration += elapsed
+        sums.duration = before.duration + elapsed
         if math.isfinite(charge):
-            sums.charge_used += max(0.0, sums.charge - charge)
+            sums.charge_used = before.charge_used + max(0.0, before.charge - charge)
             sums.charge = charge
         if not math.isfinite(x + y + yaw):
             return
-        came_from = (sums.x, sums.y) if math.dist((sums.x, sums.y), (x, y)) <= FASTEST * elapsed else (x, y)
+        came_from = before.x, before.y
+        if not math.dist(came_from, (x, y)) <= FASTEST * elapsed:
+            came_from = x, y
         middles, lengths = sample([came_from, (x, y)])
         speed = lengths.sum() / elapsed
         time = elapsed / len(lengths)  # All pieces of one chord are equally long.
-        sums.risk += sums.risk_scale * self._rates.risk_rate(middles, speed).sum() * time
-        sums.discomfort += self._rates.discomfort_rate(middles, speed).sum() * time
+        sums.risk = before.risk + before.risk_scale * self._rates.risk_rate(middles, speed).sum() * time
+        sums.discomfort = before.discomfort + self._rates.discomfort_rate(middles, speed).sum() * time
         handing_over = _handing_over(self._action.Eval(context))
         if handing_over is not None:
             sums.approach_error = approach_error((x, y, yaw), self._ideal) + presentation_error(handing_over.dish)
