@@ -16,7 +16,13 @@ from typing import Any
 from mala_drake.experiments.executors.abstract_executor import AbstractExecutor, Finished, Function, why
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-"""What numerical libraries read when they are loaded. Processes that compute side by side want one thread each."""
+
+_ENVIRONMENT = {
+    **dict.fromkeys(_THREADS, "1"),
+    "GLIBC_TUNABLES": os.environ.get("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1"),
+}
+"""What libraries read when they are loaded. Processes that compute side by side want one numerical thread each, and
+memory in large pages, which saves an episode a few hundredths of its processor time."""
 
 
 @dataclass(slots=True)
@@ -89,7 +95,7 @@ class ProcessExecutor(AbstractExecutor):
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=_serve, args=(self._function, theirs), daemon=True)
-        with _one_thread(), _interrupts_held():
+        with _environment(), _interrupts_held():
             process.start()
         theirs.close()  # So that its end is noticed here.
         worker = _Worker(process, ours, None)
@@ -129,10 +135,10 @@ def _end_with_parent() -> None:
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes started meanwhile load their numerical libraries with one thread."""
-    before = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
+def _environment() -> Iterator[None]:
+    """Processes started meanwhile load their libraries with these settings."""
+    before = {name: os.environ.get(name) for name in _ENVIRONMENT}
+    os.environ.update(_ENVIRONMENT)
     try:
         yield
     finally:

@@ -82,13 +82,16 @@ def test_a_process_that_dies_between_two_calls_is_noticed_at_the_second():
         assert executor.next_finished().result == 1
 
 
-def test_libraries_have_one_thread_there_and_what_is_set_here_stays(monkeypatch):
+def test_libraries_have_one_thread_and_large_pages_there_and_what_is_set_here_stays(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    monkeypatch.setitem(mut._ENVIRONMENT, "GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")
     with mut.ProcessExecutor(os.getenv, jobs=1) as executor:
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             executor.submit(name, name)
             assert executor.next_finished().result == "1"
+        executor.submit("memory", "GLIBC_TUNABLES")
+        assert "hugetlb" in executor.next_finished().result
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "OPENBLAS_NUM_THREADS" not in os.environ
 
