@@ -268,12 +268,14 @@ class ActionFeatures(Message):
 class ActionEvaluation(Message):
     """How a finished action turned out: its rewards R^e and R^o, and its mismatches E^psi and E^C.
 
-    `weights` are the preferences that it was planned with. Rewards and costs are defined in `ActionMeter`.
+    `weights` are the preferences that it was planned with, `prices` what they make of a second, a risk, a charge, a
+    discomfort and an approach error. Rewards and costs are defined in `ActionMeter`.
     """
 
     action: Action = Action()
     outcome: Outcome = Outcome.RUNNING
     weights: tuple[float, ...] = (0.2,) * 5
+    prices: tuple[float, ...] = (0.0,) * 5
     external_reward: float = 0.0  # R^e.
     closed_loop_cost: float | None = None  # R^o of a leg, None of an action in place.
     state_mismatch: float = 0.0  # E^psi, in [0, 1].
@@ -311,6 +313,18 @@ class LearnedDynamics(Message):
     coefficients: tuple[float, ...] = ()
     deviations: tuple[float, ...] = ()
     updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedWeights(Message):
+    """What costs the controller, as learned; empty if nothing is.
+
+    `factors` are p^g by the place that an action leads to: on the position, yaw and velocity weights and on the control
+    weights. `gains` are those of the translation from preferences to weights, 9 rows of 5, the diagonal of Q first.
+    """
+
+    factors: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    gains: tuple[tuple[float, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

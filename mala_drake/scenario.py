@@ -121,6 +121,9 @@ class ControlConfig:
     learned_targets: bool = False  # Whether targets move to where the mismatch after their legs vanishes.
     target_evidence: str = "fuzzy"  # By what: fuzzy (missing memberships), or geometric (also the place as seen).
     learned_dynamics: bool = False  # Whether the controller's model is corrected by how the robot really drives.
+    learned_weights: bool = False  # Whether its weights move, by target, so that legs come to cost what was predicted.
+    learned_translation: bool = False  # Whether how preferences become its weights moves likewise.
+    translation_rate: float = 0.002  # Of the latter: the share of a Gauss-Newton step that one leg makes.
 
     @property
     def solver_options(self) -> dict[str, Any]:

@@ -114,6 +114,7 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("planner.max_actions", scenario.planner.max_actions, 1, 10_000),
         ("planner.max_expansions", scenario.planner.max_expansions, 1, 100_000_000),
         ("control.horizon", control.horizon, 2, 200),
+        ("control.translation_rate", control.translation_rate, 1e-9, 1.0),
         ("control.sqp_iterations", control.sqp_iterations, 1, 1_000),
         ("control.step_budget", control.step_budget, 1, 100_000),
         ("control.waypoint_iterations", control.waypoint_iterations, 1, 100_000),

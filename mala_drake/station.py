@@ -13,20 +13,16 @@ from pydrake.systems.primitives import Adder
 from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
-from mala_drake.control.sensitivities.target_sensitivity import TargetSensitivity
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
+from mala_drake.control_learners import make_control_learners
 from mala_drake.errors import BadInput
 from mala_drake.grounding.atom_memberships import location_membership, predicate_memberships
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
 from mala_drake.learning.abstract_learner import FloatArray
 from mala_drake.learning.cost_estimator import CostEstimator
 from mala_drake.learning.cost_learner import CostLearner
-from mala_drake.learning.dynamics_estimator import DynamicsEstimator
-from mala_drake.learning.dynamics_learner import DynamicsLearner
 from mala_drake.learning.make_learner import make_learner
 from mala_drake.learning.preference_learner import PreferenceLearner
-from mala_drake.learning.target_estimator import TargetEstimator
-from mala_drake.learning.target_learner import TargetLearner
 from mala_drake.patient.patient import Patient
 from mala_drake.planning.task_planner import TaskPlanner
 from mala_drake.robot.action_meter import ActionMeter
@@ -276,7 +272,7 @@ class _StationBuilder:
         self._action_meter = self._add("action_meter", ActionMeter(bedsides=bedsides))
 
     def add_learning(self) -> None:
-        """The patient, and who learns: from ratings, what actions cost, where places are, how the robot answers."""
+        """The patient, and who learns: from ratings, what actions cost, and what the controller is to know."""
         scenario = self._scenario
         self._patient = self._add(
             "patient",
@@ -298,30 +294,12 @@ class _StationBuilder:
         if scenario.planner.learned_costs:
             estimator = CostEstimator(self._task_planner.predictions)
             self._cost_learner = self._add("cost_learner", CostLearner(learner=estimator))
-        wanted = scenario.control.learned_targets
-        self._target_learners = [self._add("target_learner", self._make_target_learner())] if wanted else []
-        self._dynamics_learner = None
-        if scenario.control.learned_dynamics:
-            dynamics = DynamicsEstimator(pose_noise=max(scenario.robot.position_noise, scenario.robot.yaw_noise))
-            self._dynamics_learner = self._add("dynamics_learner", DynamicsLearner(learner=dynamics))
-
-    def _make_target_learner(self) -> TargetLearner:
-        """The learner with a solver of its own, since legs are simulated while the controller drives."""
-        control, ward = self._scenario.control, self._ward
-        problem = OptimalControlProblem(horizon=control.horizon)
-        solver = MakeSolver(control.solver, problem, **control.solver_options)
-        return TargetLearner(
-            learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
-            yaws={place.name: place.yaw for place in ward.places},
-            sensitivity=TargetSensitivity(problem, solver, self._guide, self._congestion),
-            mapped=ward.shapes,
-            geometric=control.target_evidence == "geometric",
-        )
+        learners = make_control_learners(scenario, self._ward, self._guide, self._congestion)
+        self._control_learners = [self._add(name, learner) for name, learner in learners.items()]
 
     def connect(self) -> None:
         """Wires everything, source by source."""
         plant, robot = self._plant, self._robot
-        targets = self._target_learners
         # What each layer tells the others.
         self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter, self._action_meter)
         self._wire(
@@ -333,36 +311,35 @@ class _StationBuilder:
             self._grounding,
             self._feature_meter,
             self._action_meter,
-            *targets,
         )
         self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter, self._action_meter)
-        self._wire(self._controller, "leg_report", self._task_planner, self._action_meter, *targets)
-        self._wire(self._executor, "in_place_report", self._task_planner, self._world, self._grounding, *targets)
-        self._wire(self._executor, "in_place_report", self._action_meter)
-        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller, *targets)
+        self._wire(self._controller, "leg_report", self._task_planner, self._action_meter)
+        self._wire(
+            self._executor, "in_place_report", self._task_planner, self._world, self._grounding, self._action_meter
+        )
+        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller)
         self._wire(self._executor, "arm_target", self._arm)
         self._wire(self._executor, "charge_rates", self._battery)
         self._wire(self._world, "world_facts", self._grounding)
         self._wire(self._world, "handed_item", self._executor)
         self._wire(self._world, "clamped", self._magnet)
         self._wire(self._grounding, "symbolic_state", self._task_planner)
-        self._wire(self._grounding, "place_mismatch", self._action_meter, *targets)
-        self._wire(self._grounding, "reach_mismatch", *targets)
-        self._wire(self._obstacle_sensor, "obstacles", self._controller, *targets)
+        self._wire(self._grounding, "place_mismatch", self._action_meter)
+        self._wire(self._obstacle_sensor, "obstacles", self._controller)
         self._wire(self._feature_meter, "episode_report", self._patient)
         self._wire(self._feature_meter, "action_features", self._action_meter)
         self._wire(self._patient, "ratings", self._learner)
-        self._wire(self._learner, "preferences", self._task_planner, self._controller, self._action_meter, *targets)
-        for target_learner in targets:
-            self._wire(target_learner, "learned_targets", self._controller)
+        self._wire(self._learner, "preferences", self._task_planner, self._controller, self._action_meter)
+        for learner in self._control_learners:
+            self._listen(learner, self._task_planner, self._controller, self._executor, self._grounding)
+            self._listen(learner, self._obstacle_sensor, self._action_meter, self._learner, *self._control_learners)
+        self._listen(self._controller, *self._control_learners)
         # What everybody senses.
         self._fan_out("plant_state", plant.get_state_output_port(robot.robot))
         self._fan_out("arm_state", plant.get_state_output_port(robot.arm))
         if self._cost_learner is not None:
             self._wire(self._feature_meter, "action_features", self._cost_learner)
             self._wire(self._cost_learner, "learned_costs", self._task_planner)
-        if self._dynamics_learner is not None:
-            self._wire(self._dynamics_learner, "learned_dynamics", self._controller, *targets)
         self._fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
         self._fan_out("control", self._controller.GetOutputPort("control"))
         self._fan_out("charge", self._battery.GetOutputPort("charge"))
@@ -383,6 +360,13 @@ class _StationBuilder:
         """Connects the output port `name` to the input ports of the same name."""
         for target in targets:
             self._builder.Connect(source.GetOutputPort(name), target.GetInputPort(name))
+
+    def _listen(self, listener: Any, *sources: Any) -> None:
+        """Connects the inputs of a system to the outputs of the same names that others have."""
+        for source in sources:
+            for port in map(source.get_output_port, range(source.num_output_ports())):
+                if listener.HasInputPort(port.get_name()):
+                    self._builder.Connect(port, listener.GetInputPort(port.get_name()))
 
     def _fan_out(self, name: str, port: Any) -> None:
         """Connects `port` to every input port called `name` that is still open."""

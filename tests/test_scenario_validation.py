@@ -77,6 +77,7 @@ def test_no_number_may_be_negative(prefix, name):
         ("control: {solver: guess}", ["control.solver: 'guess'", "snopt", "ipopt"]),
         ("control: {sqp_iterations: 0}", ["control.sqp_iterations: 0", "from 1"]),
         ("control: {horizon_kind: growing}", ["control.horizon_kind: 'growing'", "receding, shrinking"]),
+        ("control: {translation_rate: 0.0}", ["control.translation_rate: 0", "from 1e-09 to 1"]),
         ("control: {horizon: 1}", ["control.horizon: 1", "from 2"]),
         ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
         ("grounding: {membership: vague}", ["grounding.membership: 'vague'", "fuzzy, crisp"]),

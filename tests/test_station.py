@@ -71,7 +71,8 @@ def open_inputs(station, names):
 
 
 def test_every_input_of_our_systems_is_connected_but_those_of_what_nobody_learns(station):
-    assert open_inputs(station, OURS) == [("mpc_controller", "learned_targets"), ("mpc_controller", "learned_dynamics")]
+    learned = ("learned_targets", "learned_dynamics", "learned_weights")
+    assert open_inputs(station, OURS) == [("mpc_controller", name) for name in learned]
 
 
 def displaced(**control):
@@ -84,8 +85,8 @@ def displaced(**control):
 
 def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
     station = mut.MakeCareStation(displaced(learned_targets=True))
-    still_open = [("mpc_controller", "learned_dynamics"), ("target_learner", "learned_dynamics")]
-    assert open_inputs(station, [*OURS, "target_learner"]) == still_open
+    assert ("mpc_controller", "learned_targets") not in open_inputs(station, OURS)
+    assert open_inputs(station, ["target_learner"]) == [("target_learner", "learned_dynamics")]
     assert_port_box(station.GetSubsystemByName("target_learner"))
     assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
 
@@ -94,15 +95,31 @@ def test_the_dynamics_learner_is_there_when_it_is_wanted(assert_port_box):
     scenario = Scenario()
     scenario.control.learned_dynamics = True
     station = mut.MakeCareStation(scenario)
-    assert open_inputs(station, [*OURS, "dynamics_learner"]) == [("mpc_controller", "learned_targets")]
+    assert ("mpc_controller", "learned_dynamics") not in open_inputs(station, OURS)
+    assert open_inputs(station, ["dynamics_learner"]) == []
     assert_port_box(station.GetSubsystemByName("dynamics_learner"))
     states = mut.learner_states_of(station, station.CreateDefaultContext())
     assert states["dynamics_learner"] == pytest.approx(DynamicsEstimator().initial_state())
 
 
-def test_targets_are_learned_over_the_learned_dynamics():
-    station = mut.MakeCareStation(displaced(learned_targets=True, learned_dynamics=True))
-    assert open_inputs(station, [*OURS, "target_learner", "dynamics_learner"]) == []
+@pytest.mark.parametrize(("weights", "translation", "size"), [(True, False, 0), (False, True, 46), (True, True, 46)])
+def test_the_weight_learner_is_there_when_it_is_wanted(assert_port_box, weights, translation, size):
+    scenario = Scenario()
+    scenario.control.learned_weights, scenario.control.learned_translation = weights, translation
+    station = mut.MakeCareStation(scenario)
+    assert ("mpc_controller", "learned_weights") not in open_inputs(station, OURS)
+    names = ("learned_targets", "learned_dynamics")
+    assert open_inputs(station, ["weight_learner"]) == [("weight_learner", name) for name in names]
+    assert_port_box(station.GetSubsystemByName("weight_learner"))
+    state = mut.learner_states_of(station, station.CreateDefaultContext())["weight_learner"]
+    assert state.size == size + weights * 11 * len(scenario.load_ward().places)
+
+
+def test_the_learners_of_the_controller_listen_to_each_other():
+    scenario = displaced(learned_targets=True, learned_dynamics=True, learned_weights=True, learned_translation=True)
+    station = mut.MakeCareStation(scenario)
+    learners = ["target_learner", "dynamics_learner", "weight_learner"]
+    assert open_inputs(station, [*OURS, *learners]) == []
 
 
 def test_a_displaced_place_is_elsewhere_than_the_robot_believes():

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mala_drake.messages import Action, Shape
+from mala_drake.messages import Action, LearnedWeights, Shape
 from mala_drake.ward.congestion import Congestion
 
 from .model import ControlIndex, StateIndex
@@ -25,14 +25,16 @@ from .parameters import (
     TerminalParameters,
 )
 from .reference import Reference
-from .weights_to_costs import translate
+from .weights_to_costs import DEFAULT_TRANSLATION, CostTranslation
 
 
 @dataclass(frozen=True, slots=True)
 class DrivingStyle:
     """The part of p(a) that does not depend on where the robot goes."""
 
-    position_weight: float = 1.0  # Factor on Q's position entries.
+    position_weight: float = 1.0  # Factor on Q's position entries, and on W's.
+    yaw_weight: float = 1.0  # The same for the yaw,
+    velocity_weight: float = 1.0  # and for the velocities.
     control_weight: float = 1.0  # Factor on R.
     clearance: float = 0.10  # Metres between body and obstacles.
     lateral_limit: float = 2.0  # |v_x omega|, m/s^2.
@@ -57,6 +59,22 @@ def style_of(action: Action, *, carrying: bool) -> DrivingStyle:
     return CARRYING if carrying else EMPTY_HANDED
 
 
+def learned_style(action: Action, learned: LearnedWeights, *, carrying: bool) -> DrivingStyle:
+    """The driving style of an action with the factors that were learned for where it leads."""
+    style = style_of(action, carrying=carrying)
+    factors = dict(learned.factors).get(action.place)
+    if factors is None:
+        return style
+    position, yaw, velocity, control = factors
+    return replace(
+        style,
+        position_weight=style.position_weight * position,
+        yaw_weight=style.yaw_weight * yaw,
+        velocity_weight=style.velocity_weight * velocity,
+        control_weight=style.control_weight * control,
+    )
+
+
 def make_parameters(
     *,
     style: DrivingStyle,
@@ -65,6 +83,7 @@ def make_parameters(
     obstacles: Sequence[Shape],
     congestion: Congestion,
     dynamics: DynamicsParameters | None = None,
+    translation: CostTranslation = DEFAULT_TRANSLATION,
 ) -> MpcParameters:
     """Fills the five groups for one solve.
 
@@ -75,10 +94,11 @@ def make_parameters(
         obstacles: what the sensor sees.
         congestion: limits the speed by zone.
         dynamics: p^f, nominal if None.
+        translation: from the preferences to Q and R.
     """
     states = reference.states
-    state_weights, control_weights = translate(weights)
-    state_weights = state_weights * _position_factor(style.position_weight)
+    state_weights, control_weights = translation(weights)
+    state_weights = state_weights * _state_factors(style)
     model = dynamics or DynamicsParameters(propulsion_gain=style.propulsion_gain)
     lower, upper = _NOMINAL_INPUTS.lower.copy(), _NOMINAL_INPUTS.upper.copy()
     lower[ControlIndex.PROPULSION], upper[ControlIndex.PROPULSION] = -style.propulsion_limit, style.propulsion_limit
@@ -101,7 +121,8 @@ def make_parameters(
     )
 
 
-def _position_factor(factor: float) -> NDArray[np.float64]:
-    factors = np.ones(len(StateIndex))
-    factors[[StateIndex.X, StateIndex.Y]] = factor
+def _state_factors(style: DrivingStyle) -> NDArray[np.float64]:
+    factors = np.full(len(StateIndex), style.velocity_weight)
+    factors[[StateIndex.X, StateIndex.Y]] = style.position_weight
+    factors[StateIndex.YAW] = style.yaw_weight
     return factors

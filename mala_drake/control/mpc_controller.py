@@ -19,6 +19,7 @@ from mala_drake.messages import (
     ActionReport,
     LearnedDynamics,
     LearnedTargets,
+    LearnedWeights,
     MagnetCommand,
     Message,
     Obstacles,
@@ -28,7 +29,7 @@ from mala_drake.messages import (
 )
 from mala_drake.ward.congestion import Congestion
 
-from .action_parameters import DrivingStyle, make_parameters, style_of
+from .action_parameters import DrivingStyle, learned_style, make_parameters
 from .leg import Leg, LegGuide, Pose, pose_errors
 from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
@@ -36,6 +37,7 @@ from .parameters import DynamicsParameters, StageParameters, TerminalParameters,
 from .reference import make_reference
 from .solution import Solution, Status
 from .solver import Solver
+from .weights_to_costs import DEFAULT_TRANSLATION, CostTranslation, learned_translation
 
 PARKED = (0.0, 2.0, 0.0)
 """The control that stands still: no propulsion, full (passive) brake."""
@@ -47,6 +49,7 @@ class _Driving(Message):
 
     action: Action = Action()
     style: DrivingStyle = DrivingStyle()
+    translation: CostTranslation = DEFAULT_TRANSLATION
     leg: Leg | None = None
     control: tuple[float, ...] = PARKED
     warm_start: NDArray[np.float64] | None = None
@@ -72,6 +75,7 @@ class MpcController(LeafSystem):
         - magnet
         - learned_targets
         - learned_dynamics
+        - learned_weights
         output_ports:
         - control
         - leg_report
@@ -83,7 +87,8 @@ class MpcController(LeafSystem):
     and the report says what happened.
 
     The model it predicts with, p^f, is what `learned_dynamics` says; where that says nothing or is not connected, it is
-    the nominal one.
+    the nominal one. What costs it, p^g and the translation of the preferences, is what `learned_weights` says when a
+    leg begins; where that says nothing or is not connected, the kind of action and the preferences alone decide.
 
     The wall time of each solve is appended to `solve_seconds`, a plain list: it depends on the machine, so it is no
     part of the diagram's state, and nothing in the diagram reads it.
@@ -126,6 +131,7 @@ class MpcController(LeafSystem):
         self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
         self._learned_targets = self.DeclareAbstractInputPort("learned_targets", Value(LearnedTargets()))
         self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
+        self._learned_weights = self.DeclareAbstractInputPort("learned_weights", Value(LearnedWeights()))
         self._driving = self.DeclareAbstractState(Value(_Driving()))
         from_state = {self.abstract_state_ticket(self._driving)}
         self.DeclareVectorOutputPort("control", CONTROL_SIZE, self._calc_control, prerequisites_of_calc=from_state)
@@ -159,17 +165,23 @@ class MpcController(LeafSystem):
         driving = before = self._state(context)
         action = self._action.Eval(context)
         if action.sequence > driving.action.sequence:
-            driving = self._accept(action, carrying=bool(self._magnet.Eval(context).held))
+            driving = self._accept(context, action)
         if driving.report.sequence and not driving.report.finished:
             driving = self._drive(context, driving, np.array(self._robot_state.Eval(context)))
         if driving is not before:
             state.get_mutable_abstract_state(self._driving).set_value(driving)
 
-    def _accept(self, action: Action, *, carrying: bool) -> _Driving:
-        style = style_of(action, carrying=carrying)
+    def _accept(self, context: Context, action: Action) -> _Driving:
+        connected = self._learned_weights.HasValue(context)
+        learned: LearnedWeights = self._learned_weights.Eval(context) if connected else LearnedWeights()
+        driving = _Driving(
+            action=action,
+            style=learned_style(action, learned, carrying=bool(self._magnet.Eval(context).held)),
+            translation=learned_translation(learned),
+        )
         if action.kind is not ActionKind.MOVE:
-            return _Driving(action=action, style=style)
-        return _Driving(action=action, style=style, report=ActionReport(sequence=action.sequence))
+            return driving
+        return replace(driving, report=ActionReport(sequence=action.sequence))
 
     def _drive(self, context: Context, driving: _Driving, robot_state: NDArray[np.float64]) -> _Driving:
         """One control step of a leg under way."""
@@ -217,6 +229,7 @@ class MpcController(LeafSystem):
             obstacles=self._obstacles.Eval(context).shapes,
             congestion=self._congestion,
             dynamics=self._dynamics(context),
+            translation=driving.translation,
         )
         started = time.perf_counter()
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)

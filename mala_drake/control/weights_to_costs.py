@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.errors import BadInput
+from mala_drake.messages import LearnedWeights
 from mala_drake.preferences import CRITERIA
 
 from .model import CONTROL_SIZE, STATE_SIZE
@@ -58,10 +59,34 @@ class CostTranslation:
         Raises:
             BadInput: the weights are not five non-negative numbers that sum to one.
         """
-        excess = _checked(weights) - 1.0 / len(FEATURES)
+        excess = _excess(weights)
         return self._entries(STATE_WEIGHTS, self.state_gains, excess), self._entries(
             CONTROL_WEIGHTS, self.control_gains, excess
         )
+
+    @property
+    def gains(self) -> NDArray[np.float64]:
+        """All gains, shape (9, 5): the rows of Q's diagonal, then those of R's."""
+        return np.array((*self.state_gains, *self.control_gains))
+
+    @classmethod
+    def of(cls, gains: ArrayLike) -> CostTranslation:
+        """The translation with these `gains`, shape (9, 5)."""
+        rows = [tuple(map(float, row)) for row in np.asarray(gains)]
+        return cls(tuple(rows[:STATE_SIZE]), tuple(rows[STATE_SIZE:]))
+
+    def log_gradient(self, weights: Sequence[float]) -> NDArray[np.float64]:
+        """The derivative of the logarithm of each diagonal entry by the gains of its own row, shape (9, 5).
+
+        An entry at a bound does not move with its gains.
+
+        Raises:
+            BadInput: as for the translation.
+        """
+        excess = _excess(weights)
+        factors = 1.0 + self.gains @ excess
+        inside = (factors > self.LOWEST) & (factors < self.HIGHEST)
+        return np.where(inside, 1.0 / factors, 0.0)[:, None] * excess
 
     def _entries(self, working_point: ArrayLike, gains: ArrayLike, excess: NDArray[np.float64]) -> NDArray[np.float64]:
         factors = np.clip(1.0 + np.asarray(gains) @ excess, self.LOWEST, self.HIGHEST)
@@ -88,6 +113,16 @@ def _translated(weights: tuple[float, ...]) -> tuple[NDArray[np.float64], NDArra
     for diagonal in diagonals:
         diagonal.setflags(write=False)
     return diagonals
+
+
+def learned_translation(learned: LearnedWeights) -> CostTranslation:
+    """The translation as it was learned, or the default one while none is."""
+    return CostTranslation.of(learned.gains) if learned.gains else DEFAULT_TRANSLATION
+
+
+def _excess(weights: Sequence[float]) -> NDArray[np.float64]:
+    """By how much each preference is above the uniform ones."""
+    return _checked(weights) - 1.0 / len(FEATURES)
 
 
 def _checked(weights: Sequence[float]) -> NDArray[np.float64]:

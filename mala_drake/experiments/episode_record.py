@@ -27,10 +27,12 @@ class EpisodeRecord:
     """One episode as it was executed on the physics; the fields are those of the file, in their order.
 
     `learned_dynamics` has each learned coefficient of the controller's model with its standard deviation, at the end of
-    the episode; it is not written where none are learned. `executed_actions` has an entry an action that has ended, in
-    order: `action`, `outcome`, `external_reward`, `closed_loop_cost`, `state_mismatch` and `cost_mismatch`, which
-    `ActionMeter` defines; it is None in what earlier versions have written. Clearance and collisions are taken at the
-    plant step; `terminal_errors_m` and the like have one entry a leg. Only `timing` depends on the machine.
+    the episode, `learned_weights` the factors of its weights by place (position, yaw, velocity, control), and
+    `learned_translation` the gains from preferences to its weights; they are not written where none are learned.
+    `executed_actions` has an entry an action that has ended, in order: `action`, `outcome`, `external_reward`,
+    `closed_loop_cost`, `state_mismatch` and `cost_mismatch`, which `ActionMeter` defines; it is None in what earlier
+    versions have written. Clearance and collisions are taken at the plant step; `terminal_errors_m` and the like have
+    one entry a leg. Only `timing` depends on the machine.
     """
 
     episode: int
@@ -64,6 +66,8 @@ class EpisodeRecord:
     battery_start: float
     battery_end: float
     learned_dynamics: dict[str, list[float]] | None = None
+    learned_weights: dict[str, list[float]] | None = None
+    learned_translation: list[list[float]] | None = None
     executed_actions: list[dict[str, Any]] | None = None
     timing: dict[str, float] = field(default_factory=dict)
     displaced_legs: list[dict[str, Any]] = field(default_factory=list)  # See `DisplacedLegs`.
@@ -71,7 +75,7 @@ class EpisodeRecord:
     def to_json(self) -> str:
         """The record as one line of JSON; numbers that are not finite become null."""
         written = {name: value for name, value in vars(self).items() if name not in _NOT_WRITTEN}
-        for name in ("learned_dynamics", "executed_actions"):
+        for name in ("learned_dynamics", "learned_weights", "learned_translation", "executed_actions"):
             if written[name] is None:
                 del written[name]
         if not self.displaced_legs:

@@ -19,6 +19,7 @@ from mala_drake.messages import (
     EpisodeReport,
     LearnedDynamics,
     LearnedTargets,
+    LearnedWeights,
     Outcome,
     PlaceMismatch,
     Preferences,
@@ -148,6 +149,8 @@ class EpisodeWatch:
             battery_start=self._charge_before,
             battery_end=self._charge(),
             learned_dynamics=self._learned_dynamics(),
+            learned_weights=self._learned_factors(),
+            learned_translation=self._learned_gains(),
             executed_actions=[_entry(evaluation) for evaluation in self._evaluations],
             timing=timing(
                 wall_seconds=wall_seconds,
@@ -182,6 +185,20 @@ class EpisodeWatch:
         names = [item.name for item in fields(DynamicsParameters)]
         pairs = zip(learned.coefficients, learned.deviations, strict=True)
         return {name: list(pair) for name, pair in zip(names, pairs, strict=False)}
+
+    def _learned_factors(self) -> dict[str, list[float]] | None:
+        """Factors of the controller's weights by place, if the station learns them."""
+        if not self._scenario.control.learned_weights:
+            return None
+        learned: LearnedWeights = self._read("weight_learner", "learned_weights")
+        return {place: list(factors) for place, factors in learned.factors}
+
+    def _learned_gains(self) -> list[list[float]] | None:
+        """The gains from preferences to weights, if the station learns them; empty before the first leg."""
+        if not self._scenario.control.learned_translation:
+            return None
+        learned: LearnedWeights = self._read("weight_learner", "learned_weights")
+        return [list(row) for row in learned.gains]
 
     def _leg_under_way(self) -> list[ActionReport]:
         """The leg that the end of the episode's time cuts short, if there is one."""

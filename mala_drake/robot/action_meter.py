@@ -140,12 +140,14 @@ class ActionMeter(LeafSystem):
         if features.action.sequence != sequence:
             return state
         weights = np.array(state.weights)
-        cost = float(weights @ self._scaled(self._task.Eval(context).name, features, state.approach_error))
+        scales = self._scales.get(self._task.Eval(context).name, FeatureScales()).as_array()
+        cost = float(weights @ (_measured(features, state.approach_error) / scales))
         elsewhere = any(atom[0] != "at" for atom in report.last_differing)
         evaluation = ActionEvaluation(
             features.action,
             features.outcome,
             state.weights,
+            prices=tuple((weights / scales).tolist()),
             external_reward=-cost,
             closed_loop_cost=state.closed_loop_cost,
             state_mismatch=1.0 if elsewhere else state.place_error,
@@ -181,10 +183,11 @@ class ActionMeter(LeafSystem):
         x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
         return approach_error((x, y, yaw), self._ideal) if math.isfinite(x + y + yaw) else 0.0
 
-    def _scaled(self, task: str, features: ActionFeatures, approach: float) -> NDArray[np.float64]:
-        work = in_place_action(features.action.name, features.action.arguments)
-        assembled = work.dish if work is not None and work.verb is Verb.ASSEMBLE else ""
-        done = features.outcome is Outcome.SUCCESS  # What was not done has neither approached nor assembled anything.
-        last = approach + presentation_error(assembled) if done else 0.0
-        measured = np.array([features.duration, features.risk, features.charge_used, features.discomfort, last])
-        return measured / self._scales.get(task, FeatureScales()).as_array()
+
+def _measured(features: ActionFeatures, approach: float) -> NDArray[np.float64]:
+    """The five features of an action, unscaled."""
+    work = in_place_action(features.action.name, features.action.arguments)
+    assembled = work.dish if work is not None and work.verb is Verb.ASSEMBLE else ""
+    done = features.outcome is Outcome.SUCCESS  # What was not done has neither approached nor assembled anything.
+    last = approach + presentation_error(assembled) if done else 0.0
+    return np.array([features.duration, features.risk, features.charge_used, features.discomfort, last])

@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mala_drake.messages import Shape
 from mala_drake.preferences import CRITERIA
 from mala_drake.ward.congestion import RISK_LENGTH, Congestion
 from mala_drake.ward.dishes import DISHES
@@ -25,7 +26,8 @@ FEATURES = CRITERIA
 COMFORT_RADIUS = 3.0
 """Metres round the bed within which the robot is felt as near."""
 
-_STANDING_DISCOMFORT = 0.25  # Discomfort per second of a robot that stands at the bed's edge; driving adds its speed.
+STANDING_DISCOMFORT = 0.25
+"""Discomfort per second of a robot that stands at the bed's edge; driving adds its speed."""
 
 IDEAL_HAND_OVER = (22.9, 11.4, -2.4)
 """Where the patient would like things to be handed over: metres and yaw, at the pillow's right, face to face.
@@ -65,8 +67,8 @@ class FeatureRates:
     def __init__(self, ward: Ward, *, bed: str = "bed") -> None:
         """Looks at `ward`; `bed` names the furniture that the patient lies in."""
         self._congestion = Congestion(ward)
-        beds = [piece.shape for piece in ward.furniture if piece.name == bed]
-        self._bed = ShapeDistances(beds) if beds else None
+        shape = bed_shape(ward, bed)
+        self._bed = None if shape is None else ShapeDistances([shape])
 
     def risk_rate(self, points: ArrayLike, speeds: ArrayLike) -> NDArray[np.float64]:
         """Risk per second at `points` (..., 2) and `speeds` (...), or one speed for all."""
@@ -79,7 +81,12 @@ class FeatureRates:
             return np.zeros(points.shape[:-1])
         distance = self._bed(points)[..., 0]
         closeness = np.clip(1.0 - distance / COMFORT_RADIUS, 0.0, 1.0)
-        return closeness * (_STANDING_DISCOMFORT + np.abs(np.asarray(speeds)))
+        return closeness * (STANDING_DISCOMFORT + np.abs(np.asarray(speeds)))
+
+
+def bed_shape(ward: Ward, name: str = "bed") -> Shape | None:
+    """The bed that the patient lies in, seen from above; None in a ward without one."""
+    return next((piece.shape for piece in ward.furniture if piece.name == name), None)
 
 
 def approach_error(pose: tuple[float, float, float], ideal: tuple[float, float, float]) -> float:

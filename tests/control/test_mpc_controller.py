@@ -16,11 +16,13 @@ from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.solution import Status
 from mala_drake.control.solver import MakeSolver
+from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION, CostTranslation
 from mala_drake.messages import (
     Action,
     ActionKind,
     LearnedDynamics,
     LearnedTargets,
+    LearnedWeights,
     MagnetCommand,
     Obstacles,
     Outcome,
@@ -86,7 +88,7 @@ class Bench:
         self.action = fix("action", Value(Action()))
         self.obstacles = fix("obstacles", Value(Obstacles()))
         self.charge = fix("charge", [1.0])
-        fix("preferences", Value(Preferences()))
+        self.preferences = fix("preferences", Value(Preferences()))
         self.magnet = fix("magnet", Value(MagnetCommand()))
         self.ticks = 0
 
@@ -285,15 +287,16 @@ def test_a_target_learned_under_way_is_for_the_next_leg(bench):
 
 
 class ListeningSolver:
-    """Wraps a solver and keeps the model that each solve is given."""
+    """Wraps a solver and keeps the model and the stage cost that each solve is given."""
 
     name = "listening"
 
     def __init__(self, solver):
-        self._solver, self.models = solver, []
+        self._solver, self.models, self.stages = solver, [], []
 
     def solve(self, initial_state, parameters, warm_start=None):
         self.models.append(parameters.dynamics)
+        self.stages.append(parameters.stage)
         return self._solver.solve(initial_state, parameters, warm_start)
 
 
@@ -308,6 +311,40 @@ def test_a_learned_model_is_predicted_with_from_the_next_solve_on(problem):
     bench.tick()
     nominal = DynamicsParameters()
     assert solver.models == [nominal, nominal, DynamicsParameters(*learned.coefficients)]
+
+
+def test_learned_weights_are_for_the_next_leg(problem):
+    solver = ListeningSolver(MakeSolver("rti", problem))
+    bench = Bench(problem, solver=solver)
+    port = bench.system.GetInputPort("learned_weights").FixValue(bench.context, Value(LearnedWeights()))
+    bench.send(GO)
+    bench.tick()
+    gains = 0.5 * DEFAULT_TRANSLATION.gains
+    learned = LearnedWeights((("there", (2.0, 1.0, 1.0, 0.5)),), tuple(map(tuple, gains.tolist())))
+    port.GetMutableData().set_value(learned)
+    bench.tick()
+    bench.send(replace(GO, sequence=2))
+    bench.tick()
+    first, same, last = solver.stages
+    np.testing.assert_array_equal(first.state_weights, same.state_weights)
+    # The preferences are uniform, so that the gains have no effect; the factors have.
+    np.testing.assert_allclose(last.state_weights, first.state_weights * [2.0, 2.0, 1.0, 1.0, 1.0, 1.0])
+    np.testing.assert_allclose(last.control_weights, 0.5 * first.control_weights)
+
+
+def test_a_learned_translation_translates_the_preferences(problem):
+    solver = ListeningSolver(MakeSolver("rti", problem))
+    bench = Bench(problem, solver=solver)
+    weights = (0.4, 0.3, 0.1, 0.1, 0.1)
+    bench.preferences.GetMutableData().set_value(Preferences(estimate=weights))
+    gains = 0.5 * DEFAULT_TRANSLATION.gains
+    learned = LearnedWeights(gains=tuple(map(tuple, gains.tolist())))
+    bench.system.GetInputPort("learned_weights").FixValue(bench.context, Value(learned))
+    bench.send(GO)
+    bench.tick()
+    state_weights, control_weights = CostTranslation.of(gains)(weights)
+    np.testing.assert_allclose(solver.stages[0].state_weights, state_weights)
+    np.testing.assert_allclose(solver.stages[0].control_weights, control_weights)
 
 
 def test_a_weaker_robot_is_driven_with_more_propulsion(problem):

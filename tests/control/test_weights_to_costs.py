@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import mala_drake.control.weights_to_costs as mut
 from mala_drake.errors import BadInput
+from mala_drake.messages import LearnedWeights
 
 UNIFORM = (0.2,) * 5
 SPEED_ORIENTED = (0.50, 0.12, 0.14, 0.14, 0.10)
@@ -50,6 +51,24 @@ def test_two_profiles_get_different_costs():
     fast, safe = (np.concatenate(mut.translate(w)) for w in (SPEED_ORIENTED, SAFETY_FIRST))
     assert fast[0] > 1.3 * safe[0]
     assert safe[3] > 1.3 * fast[3]
+
+
+def test_all_gains_make_the_same_translation():
+    assert mut.CostTranslation.of(mut.DEFAULT_TRANSLATION.gains) == mut.DEFAULT_TRANSLATION
+    assert mut.learned_translation(LearnedWeights()) == mut.DEFAULT_TRANSLATION
+    gains = 0.5 * mut.DEFAULT_TRANSLATION.gains
+    assert mut.learned_translation(LearnedWeights(gains=tuple(map(tuple, gains)))) == mut.CostTranslation.of(gains)
+
+
+@given(weights=simplex, gains=arrays(float, (9, 5), elements=st.floats(-8.0, 8.0)))
+def test_the_derivative_by_the_gains_is_a_difference(weights, gains):
+    factors = 1.0 + gains @ (weights - 0.2)
+    assume(np.abs(np.subtract.outer(factors, [0.1, 4.0])).min() > 1e-3)  # At a bound there is a kink.
+    gradient = mut.CostTranslation.of(gains).log_gradient(weights)
+    for i in range(5):
+        step = 1e-6 * np.eye(5)[i]  # Each row has an entry of its own.
+        ends = [np.log(np.concatenate(mut.CostTranslation.of(gains + sign * step)(weights))) for sign in (1, -1)]
+        np.testing.assert_allclose(gradient[:, i], (ends[0] - ends[1]) / 2e-6, atol=1e-5)
 
 
 @given(gains=arrays(float, (9, 5), elements=st.floats(-1e6, 1e6)), weights=simplex)

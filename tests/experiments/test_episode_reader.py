@@ -16,8 +16,10 @@ def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode
         episode_record(episode=1, success=False, failure="no way", ratings=[None] * 5, plan_cost=math.nan),
         episode_record(episode=2, learned_dynamics={"yaw_coupling": [0.31, 0.01]}),
     ]
+    learned = {"learned_weights": {"pantry": [1.5, 1.0, 0.8, 0.9]}, "learned_translation": [[2.0] * 5] * 9}
+    written.append(episode_record(episode=4, **learned))
     entry = {"action": "(recharge robot1)", "closed_loop_cost": None, "cost_mismatch": 0.01}
-    written.append(episode_record(episode=3, executed_actions=[entry]))
+    written.append(episode_record(episode=5, executed_actions=[entry]))
     (tmp_path / "file").write_text("".join(record.to_json() + "\n" for record in written))
     records, torn = mut.read_episodes(tmp_path / "file")
     assert not torn
@@ -25,7 +27,8 @@ def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode
     assert math.isnan(records[1].plan_cost)
     assert records[2].learned_dynamics == {"yaw_coupling": [0.31, 0.01]}
     assert records[2].executed_actions is None
-    assert records[3].executed_actions == [entry]
+    assert (records[3].learned_weights, records[3].learned_translation) == tuple(learned.values())
+    assert records[4].executed_actions == [entry]
 
 
 def test_a_torn_last_line_is_left_out_and_told(tmp_path, episode_record):

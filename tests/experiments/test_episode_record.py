@@ -70,6 +70,13 @@ def test_learned_dynamics_are_written_where_they_are_learned(episode_record):
     assert written["learned_dynamics"] == learned
 
 
+def test_learned_weights_are_written_where_they_are_learned(episode_record):
+    learned = {"learned_weights": {"pantry": [1.5, 1.0, 0.8, 0.9]}, "learned_translation": [[2.0, 0.0, 0.0, 0.0, 0.0]]}
+    written = strict(episode_record(**learned).to_json())
+    assert sorted(written) == sorted([*KEYS, *learned])
+    assert {name: written[name] for name in learned} == learned
+
+
 def test_executed_actions_are_written_before_the_timing(episode_record):
     entry = {"action": "(recharge robot1)", "outcome": "success", "external_reward": -0.1, "closed_loop_cost": None}
     written = strict(episode_record(executed_actions=[entry]).to_json())

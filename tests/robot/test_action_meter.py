@@ -103,6 +103,7 @@ def test_a_leg_is_evaluated_by_hand(stage):
     )
     measured = 0.4 * 0.3 + 0.1 * 0.1 + 0.3 * 0.15 + 0.2 * 0.4
     assert (evaluation.action, evaluation.outcome, evaluation.weights) == (LEG, Outcome.SUCCESS, WEIGHTS)
+    assert evaluation.prices == pytest.approx((0.4 / 100.0, 0.1 / 0.2, 0.3, 0.2 / 10.0, 0.0))
     assert evaluation.external_reward == pytest.approx(-measured)
     assert evaluation.cost_mismatch == pytest.approx(measured - (0.4 * 0.2 + 0.3 * 0.1))
     assert evaluation.closed_loop_cost == 340.0

@@ -54,6 +54,12 @@ class ClosedLoopRun(Message):
         return all(step.solved and step.regularity.differentiable for step in self.steps)
 
     @property
+    def tail(self) -> ClosedLoopRun:
+        """The steps after the last one without a derivative; all of them where there is none."""
+        broken = [i for i, step in enumerate(self.steps) if not (step.solved and step.regularity.differentiable)]
+        return ClosedLoopRun(self.steps[broken[-1] + 1 :] if broken else self.steps)
+
+    @property
     def irregular_steps(self) -> tuple[int, ...]:
         """Where a solve failed, or a condition of the implicit function theorem does, be it a weakly active bound."""
         return tuple(i for i, step in enumerate(self.steps) if not (step.solved and step.regularity.regular))

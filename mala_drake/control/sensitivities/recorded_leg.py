@@ -19,6 +19,7 @@ from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.parameters import DynamicsParameters, MpcParameters
 from mala_drake.control.reference import make_reference
 from mala_drake.control.solver import Solver
+from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION, CostTranslation
 from mala_drake.messages import Outcome, Shape
 from mala_drake.ward.congestion import Congestion
 
@@ -67,6 +68,7 @@ class LegRecorder:
         style: DrivingStyle,
         weights: Sequence[float],
         dynamics: DynamicsParameters | None = None,
+        translation: CostTranslation = DEFAULT_TRANSLATION,
     ) -> RecordedLeg:
         """The leg from a state, shape (6,), to a pose.
 
@@ -77,6 +79,7 @@ class LegRecorder:
             style: of driving.
             weights: the preferences.
             dynamics: p^f of the model that is driven over; nominal if None.
+            translation: from the preferences to Q and R.
 
         Raises:
             RuntimeError: the leg did not succeed; says how it ended.
@@ -103,6 +106,7 @@ class LegRecorder:
                 obstacles=obstacles,
                 congestion=self._congestion,
                 dynamics=dynamics,
+                translation=translation,
             )
             solution = self._solver.solve(state, parameters, warm_start)
             steps.append(parameters)

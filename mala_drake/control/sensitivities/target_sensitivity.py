@@ -17,7 +17,7 @@ from mala_drake.messages import Action, LearnedDynamics, Shape
 from mala_drake.ward.congestion import Congestion
 
 from .analysis import SensitivityAnalysis
-from .closed_loop import ClosedLoop, ClosedLoopRun
+from .closed_loop import ClosedLoop
 from .leg_sensitivity import adjoint
 from .recorded_leg import KNOBS, NOMINAL, LegRecorder
 from .simulation_model import SimulationModel
@@ -71,7 +71,7 @@ class TargetSensitivity:
         model = leg.steps[0].dynamics.vector
         schedule = leg.with_knobs(NOMINAL, self._analysis.columns)
         run = self._loop.run(leg.initial_state, schedule, model, len(leg.steps))
-        tail = ClosedLoopRun(run.steps[_after_last_break(run) :])
+        tail = run.tail
         if not tail.steps:
             raise RuntimeError("has no derivative at its end")
         gradients = [adjoint(tail, end) for end in np.eye(STATE_SIZE)[[StateIndex.X, StateIndex.Y]]]
@@ -79,9 +79,3 @@ class TargetSensitivity:
         if not whole and max(np.abs(gradient.by_initial_state).max() for gradient in gradients) > _FORGOTTEN:
             raise RuntimeError("has no derivative near its end")
         return np.array([gradient.by_knobs[_TARGET] for gradient in gradients])
-
-
-def _after_last_break(run: ClosedLoopRun) -> int:
-    """The first step after which all have derivatives."""
-    broken = [i for i, step in enumerate(run.steps) if not (step.solved and step.regularity.differentiable)]
-    return broken[-1] + 1 if broken else 0

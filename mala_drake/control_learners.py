@@ -1,0 +1,82 @@
+"""The learners that tell the controller something, as a scenario wants them (paper, Sec. "Updating the MPC ...")."""
+
+from __future__ import annotations
+
+from pydrake.systems.framework import LeafSystem
+
+from mala_drake.control import MakeSolver, OptimalControlProblem, Solver
+from mala_drake.control.leg import LegGuide
+from mala_drake.control.sensitivities.cost_sensitivity import CostSensitivity
+from mala_drake.control.sensitivities.leg_cost import LegCost
+from mala_drake.control.sensitivities.target_sensitivity import TargetSensitivity
+from mala_drake.learning.dynamics_estimator import DynamicsEstimator
+from mala_drake.learning.dynamics_learner import DynamicsLearner
+from mala_drake.learning.target_estimator import TargetEstimator
+from mala_drake.learning.target_learner import TargetLearner
+from mala_drake.learning.translation_estimator import TranslationEstimator
+from mala_drake.learning.weight_estimator import WeightEstimator
+from mala_drake.learning.weight_learner import WeightLearner
+from mala_drake.robot.drive_charge import charge_rate
+from mala_drake.scenario import ControlConfig, Scenario
+from mala_drake.ward.congestion import Congestion
+from mala_drake.ward.features import bed_shape
+from mala_drake.ward.ward_map import Ward
+
+
+def make_control_learners(
+    scenario: Scenario, ward: Ward, guide: LegGuide, congestion: Congestion
+) -> dict[str, LeafSystem]:
+    """The systems by their names in the station; none by default.
+
+    Each has one output port, named as the controller's input. Who simulates legs has a solver of its own, since the
+    controller's is in use.
+
+    Args:
+        scenario: valid.
+        ward: as the robot's map has it.
+        guide: of the controller.
+        congestion: of the ward.
+    """
+    control = scenario.control
+    learners: dict[str, LeafSystem] = {}
+    if control.learned_targets:
+        learners["target_learner"] = _target_learner(control, ward, guide, congestion)
+    if control.learned_dynamics:
+        pose_noise = max(scenario.robot.position_noise, scenario.robot.yaw_noise)
+        learners["dynamics_learner"] = DynamicsLearner(learner=DynamicsEstimator(pose_noise=pose_noise))
+    if control.learned_weights or control.learned_translation:
+        learners["weight_learner"] = _weight_learner(control, ward, guide, congestion)
+    return learners
+
+
+def _target_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> TargetLearner:
+    problem, solver = _solver(control)
+    return TargetLearner(
+        learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
+        yaws={place.name: place.yaw for place in ward.places},
+        sensitivity=TargetSensitivity(problem, solver, guide, congestion),
+        mapped=ward.shapes,
+        geometric=control.target_evidence == "geometric",
+    )
+
+
+def _weight_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> WeightLearner:
+    problem, solver = _solver(control)
+    return WeightLearner(
+        weights=WeightEstimator([place.name for place in ward.places]) if control.learned_weights else None,
+        translation=TranslationEstimator(rate=control.translation_rate) if control.learned_translation else None,
+        targets={place.name: (place.x, place.y, place.yaw) for place in ward.places},
+        gradient=CostSensitivity(
+            problem,
+            solver,
+            guide,
+            congestion,
+            cost=LegCost(bed=bed_shape(ward), charge_rate=charge_rate, period=problem.period),
+            bedsides=[place.name for place in ward.places if place.category == "bedside"],
+        ),
+    )
+
+
+def _solver(control: ControlConfig) -> tuple[OptimalControlProblem, Solver]:
+    problem = OptimalControlProblem(horizon=control.horizon)
+    return problem, MakeSolver(control.solver, problem, **control.solver_options)
