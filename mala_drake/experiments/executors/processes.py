@@ -22,7 +22,7 @@ _ENVIRONMENT = {
     "GLIBC_TUNABLES": os.environ.get("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1"),
 }
 """What libraries read when they are loaded. Processes that compute side by side want one numerical thread each, and
-memory in large pages, which saves an episode a few hundredths of its processor time."""
+memory in large pages, which saves an episode a twentieth of its processor time."""
 
 
 @dataclass(slots=True)
