@@ -6,7 +6,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mala_drake.scenario_file import LoadScenario
+    from mala_drake.scenario import LoadScenario
     from mala_drake.station import MakeCareStation
 
 __all__ = ["LoadScenario", "MakeCareStation", "__version__"]
@@ -20,7 +20,7 @@ except PackageNotFoundError:  # Run from a checkout that is not installed.
 def __getattr__(name: str) -> Any:
     """Imports Drake only when the diagram is wanted: pure parts and `--help` stay quick."""
     if name == "LoadScenario":
-        from mala_drake.scenario_file import LoadScenario
+        from mala_drake.scenario import LoadScenario
 
         return LoadScenario
     if name == "MakeCareStation":

@@ -107,8 +107,7 @@ def _chosen_scenario(
     file: Path | None, task: str | None, profile: str | None, episodes: int | None, seed: int | None, solver: str | None
 ) -> Scenario:
     """The scenario of the file with what the options change; a mistake is told by the name of its option."""
-    from mala_drake.scenario_file import LoadScenario
-    from mala_drake.scenario_validation import Validate
+    from mala_drake.scenario import LoadScenario, Validate
 
     chosen = LoadScenario(file)
     chosen.task = chosen.task if task is None else task
@@ -187,7 +186,7 @@ def graph(
 ) -> None:
     """Draw the diagram of a scenario."""
     from mala_drake.reporting.diagram_graph import write_graph
-    from mala_drake.scenario_file import LoadScenario
+    from mala_drake.scenario import LoadScenario
     from mala_drake.station import MakeCareStation
 
     if max_depth is not None and max_depth < 0:

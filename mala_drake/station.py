@@ -43,8 +43,7 @@ from mala_drake.robot.sleeping_boxes import SleepingBoxes
 from mala_drake.robot.state_estimator import StateEstimator
 from mala_drake.robot.ward_plant import AddWard
 from mala_drake.robot.world import World
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_validation import Validate
+from mala_drake.scenario import Scenario, Validate
 from mala_drake.scheduling.scheduler import Scheduler
 from mala_drake.scheduling.sequence import task_names
 from mala_drake.ward.congestion import Congestion

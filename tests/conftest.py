@@ -12,8 +12,7 @@ import yaml
 from hypothesis import settings
 from pydrake.systems.framework import System
 
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_file import LoadScenario
+from mala_drake.scenario import LoadScenario, Scenario
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 # A shared machine makes any deadline a coin toss, and a suite that others run must not find new examples each time.

@@ -12,8 +12,7 @@ import mala_drake
 from mala_drake.configuration import typed
 from mala_drake.errors import BadInput
 from mala_drake.patient.profiles import PROFILES
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_validation import Validate
+from mala_drake.scenario import Scenario, Validate
 
 MAIN = ""
 """The condition whose runs lie in no folder of their own."""

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from mala_drake.errors import BadInput
 from mala_drake.experiments.experiment import CUSTOM, Changes, Experiment, known_profiles
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_file import LoadScenario
+from mala_drake.scenario import LoadScenario, Scenario
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,7 @@ from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeFile, Ep
 from mala_drake.experiments.run_summary import SUMMARY_FILE, summarise
 from mala_drake.experiments.stations import Stations
 from mala_drake.reporting.run_recording import RunRecording
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_validation import Validate
+from mala_drake.scenario import Scenario, Validate
 
 
 class Watcher(Protocol):

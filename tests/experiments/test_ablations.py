@@ -9,9 +9,7 @@ import yaml
 
 from mala_drake.experiments import ablations as mut
 from mala_drake.experiments.experiment import Experiment, RunName
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_file import LoadScenario
-from mala_drake.scenario_validation import Validate
+from mala_drake.scenario import LoadScenario, Scenario, Validate
 from mala_drake.station import MakeCareStation
 
 BASE = Scenario(task="alternate", episodes=2)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from mala_drake.configuration import load_typed
 from mala_drake.resources import models_folder
-from mala_drake.scenario import Scenario
-from mala_drake.scenario_validation import Validate
+from mala_drake.scenario.fields import Scenario
+from mala_drake.scenario.validation import Validate
 
 
 def LoadScenario(path: str | Path | None = None, *, defaults: Scenario | None = None) -> Scenario:

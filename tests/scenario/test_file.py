@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from mala_drake import scenario_file as mut
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.resources import models_folder
 from mala_drake.scenario import Scenario
+from mala_drake.scenario import file as mut
 
 
 def test_the_default_scenario_is_a_round_of_medicine_and_a_meal():

@@ -1,4 +1,4 @@
-"""What to simulate: plain fields, each with a default. `scenario_file` reads them, `scenario_validation` checks them.
+"""What to simulate: plain fields, each with a default. `file` reads them, `validation` checks them.
 
 Drake's YAML reader looks at the fields' types themselves, so annotations in this module are not postponed.
 """

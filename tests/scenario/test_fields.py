@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mala_drake import scenario as mut
 from mala_drake.patient.profiles import PROFILES
+from mala_drake.scenario import fields as mut
 
 
 def test_true_weights_replace_the_profile(load_scenario):

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import yaml
 
-from mala_drake import scenario_validation as mut
 from mala_drake.errors import BadInput
 from mala_drake.resources import models_folder
 from mala_drake.scenario import Scenario
+from mala_drake.scenario import validation as mut
 from mala_drake.ward.routes import BODY_RADIUS
 from mala_drake.ward.shapes import ShapeDistances
 

@@ -15,7 +15,7 @@ from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import validated_weights
-from mala_drake.scenario import HORIZON_KINDS, TARGET_EVIDENCE, Scenario
+from mala_drake.scenario.fields import HORIZON_KINDS, TARGET_EVIDENCE, Scenario
 from mala_drake.ward.displacement import taken_place
 from mala_drake.ward.items import all_items
 from mala_drake.ward.models import ward_models

@@ -1,0 +1,35 @@
+"""What to simulate: its fields, the file they are read from, and what they may be."""
+
+from mala_drake.scenario.fields import (
+    HORIZON_KINDS,
+    TARGET_EVIDENCE,
+    ControlConfig,
+    DisplacedPlaceConfig,
+    GroundingConfig,
+    LearnerConfig,
+    ObstacleConfig,
+    PatientConfig,
+    PlannerConfig,
+    RobotConfig,
+    Scenario,
+    WorldConfig,
+)
+from mala_drake.scenario.file import LoadScenario
+from mala_drake.scenario.validation import Validate
+
+__all__ = [
+    "HORIZON_KINDS",
+    "TARGET_EVIDENCE",
+    "ControlConfig",
+    "DisplacedPlaceConfig",
+    "GroundingConfig",
+    "LearnerConfig",
+    "LoadScenario",
+    "ObstacleConfig",
+    "PatientConfig",
+    "PlannerConfig",
+    "RobotConfig",
+    "Scenario",
+    "Validate",
+    "WorldConfig",
+]
