@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
+from multiprocessing.resource_tracker import ensure_running
 from typing import Any
 
 from mala_drake.experiments.executors.abstract_executor import AbstractExecutor, Finished, Function, why
@@ -152,6 +153,7 @@ def _environment() -> Iterator[None]:
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
     """Processes started meanwhile inherit that the keyboard's interrupt does not reach them."""
+    ensure_running()  # Starting the first process would start the tracker as well, which lets interrupts through again.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

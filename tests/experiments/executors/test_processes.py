@@ -103,6 +103,19 @@ def test_the_interrupt_of_the_keyboard_does_not_reach_the_processes():
         assert executor.next_finished().result == "alive"
 
 
+def test_it_does_not_reach_the_very_first_process_either():
+    code = """if __name__ == "__main__":
+    from mala_drake.experiments.executors.processes import ProcessExecutor
+    with ProcessExecutor(eval, jobs=1) as executor:
+        executor.submit("a", "2 in __import__('signal').pthread_sigmask(0, [])")
+        print(executor.next_finished().result)
+"""
+    folder = Path(mala_drake.__file__).parents[1]
+    command, environment = [sys.executable, "-c", code], {**os.environ, "PYTHONPATH": str(folder)}
+    told = subprocess.run(command, env=environment, check=True, capture_output=True, text=True)
+    assert told.stdout == "True\n"
+
+
 def test_an_answer_that_nobody_waits_for_any_more_is_no_error(monkeypatch):
     monkeypatch.setattr(mut, "_end_with_parent", lambda: None)  # The process of this test has no parent of that kind.
     conducting, serving = multiprocessing.Pipe()
