@@ -7,6 +7,7 @@ failed (an episode failed, no plan exists, time ran out), 2 on bad input, told i
 from __future__ import annotations
 
 import json
+import logging
 import math
 import re
 import sys
@@ -317,6 +318,8 @@ def bench(
     from mala_drake.experiments.bench import run_benchmarks
     from mala_drake.reporting.console import print_rows
 
+    # IPOPT says a line for every solve that it gives up; the tables count them.
+    logging.getLogger("drake").addFilter(lambda record: not record.getMessage().startswith("IPOPT terminated"))
     results = run_benchmarks(name)
     if as_json:
         typer.echo(json.dumps(results))

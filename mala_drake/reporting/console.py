@@ -108,10 +108,36 @@ def _number(value: float | None, digits: int) -> str:
 
 
 def print_rows(title: str, rows: Sequence[dict[str, Any]]) -> None:
-    """Prints benchmark rows as a table; every row has the same keys."""
+    """Prints benchmark rows as a table; every row has the same keys. A table too wide for the terminal is turned."""
+    console = Console()
+    names = list(rows[0]) if rows else []
+    lines = [names, *([_cell(value) for value in row.values()] for row in rows)]
+    columns = list(zip(*lines, strict=True))
+    if _width(columns) <= console.width:
+        words = [name for name in names if isinstance(rows[0][name], str)]
+        _print_columns(console, title, columns, left=words)
+        return
+    # Turned: the keys to the left, and as many rows beside them as there is room for.
+    keys, *turned = lines
+    while turned:
+        count = next((n for n in range(len(turned), 1, -1) if _width([keys, *turned[:n]]) <= console.width), 1)
+        _print_columns(console, title, [keys, *turned[:count]], left=keys[:1])
+        turned = turned[count:]
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def _width(columns: Sequence[Sequence[str]]) -> int:
+    """Characters of a table of these columns, with its lines."""
+    return sum(max(map(len, column)) + 3 for column in columns) + 1
+
+
+def _print_columns(console: Console, title: str, columns: Sequence[Sequence[str]], *, left: Sequence[str]) -> None:
     table = Table(title=title, title_justify="left")
-    for key in rows[0] if rows else ():
-        table.add_column(key, justify="left" if isinstance(rows[0][key], str) else "right")
-    for row in rows:
-        table.add_row(*(f"{value:.3g}" if isinstance(value, float) else str(value) for value in row.values()))
-    Console().print(table)
+    for heading, *_ in columns:
+        table.add_column(heading, justify="left" if heading in left else "right")
+    for line in list(zip(*columns, strict=True))[1:]:
+        table.add_row(*line)
+    console.print(table)

@@ -106,6 +106,18 @@ def test_benchmark_rows_are_a_table(capsys):
     assert "1.23456" not in output
 
 
+def test_a_table_too_wide_for_the_terminal_is_turned_and_loses_nothing(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    rows = [{"solver": f"solver_{i}", **{f"figure_{j}": 1000 * i + j for j in range(12)}} for i in range(7)]
+    mut.print_rows("wide", rows)
+    output = capsys.readouterr().out
+    assert max(map(len, output.splitlines())) <= 60
+    assert "…" not in output
+    for row in rows:
+        assert all(str(value) in output for value in row.values())
+    assert output.count("figure_11") == 2  # In two parts.
+
+
 def test_no_rows_are_no_columns(capsys):
     mut.print_rows("empty", [])
     assert json.dumps("median_ms") not in capsys.readouterr().out
