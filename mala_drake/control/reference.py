@@ -22,7 +22,7 @@ from .piecewise_linear import PiecewiseLinear
 _TURN_FIRST = 0.5  # Radians of heading error beyond which a moving start turns on the spot first.
 _ALIGNED = 0.12  # Radians within which such a turn is done.
 _MARGIN = 0.92  # Share of the speed ceiling that the reference uses, so that the limit itself stays inactive.
-_SEARCH_BACK, _SEARCH_AHEAD = 10, 60  # Samples of the path in which the robot is looked for.
+_SEARCH_AHEAD = 60  # Samples of the path in which the robot is looked for.
 _AT_REST = 1e-6  # Metres, radians, and those per second.
 _REVERSE_SPEED = 0.3  # Metres per second at most when creeping back.
 
@@ -82,10 +82,13 @@ class Track(Message):
         return min(speed, _REVERSE_SPEED) if self.reverse else speed
 
     def progress(self, position: NDArray[np.float64], previous: float) -> tuple[float, float]:
-        """Arc length of the sample nearest to `position`, near the previous one, and the distance to it in metres."""
-        at = int(np.searchsorted(self.path.lengths, previous))
-        first = max(0, at - _SEARCH_BACK)
-        window = self.path.points[first : at + _SEARCH_AHEAD]
+        """Arc length of the sample nearest to `position`, from the previous one on, and the distance to it in metres.
+
+        It never falls: where a path turns back on itself, the robot that has begun to turn would else be taken back to
+        before the turn, and so on for ever.
+        """
+        first = int(np.searchsorted(self.path.lengths, previous))
+        window = self.path.points[first : first + _SEARCH_AHEAD]
         distances = np.hypot(*(window - position).T)
         nearest = int(np.argmin(distances))
         return float(self.path.lengths[first + nearest]), float(distances[nearest])

@@ -76,6 +76,17 @@ def test_progress_is_found_near_the_last_one_on_a_path_that_comes_back():
     assert back == pytest.approx(track.path.length - 4.0, abs=0.1)
 
 
+@given(st.lists(st.tuples(st.floats(-2.0, 7.0), st.floats(-2.0, 2.0)), min_size=2, max_size=20))
+def test_progress_never_falls(positions):
+    track = track_through([(0, 0), (5, 0), (0, 0.5)])
+    length = 0.0
+    for position in positions:
+        further, distance = track.progress(np.array(position), length)
+        assert length <= further <= track.path.length
+        assert distance >= 0.0
+        length = further
+
+
 def test_a_reference_that_comes_to_rest_ends_there_and_one_that_does_not_stays_whole():
     track = track_through([(0, 0), (1, 0)], target_yaw=0.3)
     whole = roll(track, (0, 0, 0, 0, 0, 0), horizon=40)

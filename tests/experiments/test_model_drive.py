@@ -3,7 +3,8 @@ import pytest
 
 import mala_drake.experiments.model_drive as mut
 from mala_drake.control import MakeSolver, OptimalControlProblem
-from mala_drake.experiments.model_drives import course
+from mala_drake.experiments.model_drives import course, ward_leg
+from mala_drake.ward.ward_map import LoadWard
 
 
 @pytest.fixture(scope="module")
@@ -18,6 +19,13 @@ def test_the_course_is_driven_to_its_end_without_contact(problem, name):
     assert run.min_clearance > 0.05
     assert run.position_error < 0.15
     assert len(run.milliseconds) == len(run.samples) == course().steps
+
+
+def test_a_path_that_turns_back_just_before_its_end_is_driven_to_its_end(problem):
+    leg = ward_leg(LoadWard(), "patient_bed_right", "pharmacy_south")
+    run = mut.run_drive(problem, MakeSolver("rti", problem), leg, seed=1)
+    assert run.min_clearance > 0.05
+    assert run.position_error < 0.15
 
 
 def test_in_two_phases_one_iteration_drives_it_as_well(problem):
