@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dpotrf, dtrtri
 
 Vector = NDArray[np.float64]
 
@@ -21,11 +22,10 @@ def state_sensitivities(transitions: Vector, inputs: Vector) -> Vector:
     """
     horizon, n, m = inputs.shape
     sensitivities = np.zeros((horizon, n, m * horizon))
-    for k in range(horizon):
-        reached = sensitivities[k]
-        if k > 0:
-            np.matmul(transitions[k], sensitivities[k - 1, :, : m * k], out=reached[:, : m * k])
-        reached[:, m * k : m * (k + 1)] = inputs[k]
+    stages = np.arange(horizon)
+    sensitivities.reshape(horizon, n, horizon, m)[stages, :, stages, :] = inputs
+    for transition, before, reached in zip(transitions[1:], sensitivities[:-1], sensitivities[1:], strict=True):
+        reached += transition.dot(before)
     return sensitivities
 
 
@@ -60,9 +60,10 @@ def costates(transitions: Vector, state_gradients: Vector) -> Vector:
 
 
 def whitening(hessian: Vector) -> Vector:
-    """T with T' hessian T = I; the identity where the numbers overflow, so that a solve can fail in its own way."""
-    try:
-        transform = np.linalg.inv(np.linalg.cholesky(hessian)).T.copy()
-    except np.linalg.LinAlgError:
-        return np.eye(len(hessian))
-    return transform if np.isfinite(transform).all() else np.eye(len(hessian))
+    """Upper triangular T with T' hessian T = I, the inverse of the Cholesky factor.
+
+    The identity where the numbers overflow, so that a solve can fail in its own way.
+    """
+    factor, flaw = dpotrf(hessian.T)
+    transform, singular = dtrtri(factor, overwrite_c=True)
+    return np.eye(len(hessian)) if flaw or singular or not np.isfinite(transform).all() else transform

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ class ParameterLayout:
     horizon: int
     slots: int
 
-    @property
+    @cached_property
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """Piece name to shape, in storage order."""
         return {
@@ -48,7 +49,7 @@ class ParameterLayout:
             "constraints.obstacles": (self.slots, OBSTACLE_SIZE),
         }
 
-    @property
+    @cached_property
     def slices(self) -> dict[str, slice]:
         """Piece name to its place in p."""
         places: dict[str, slice] = {}
@@ -59,7 +60,7 @@ class ParameterLayout:
             start += size
         return places
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Length of p."""
         return sum(int(np.prod(shape)) for shape in self.shapes.values())
@@ -84,24 +85,26 @@ class ParameterLayout:
         target[StateIndex.YAW] = yaw[-1]
         positions = trajectory[:, [StateIndex.X, StateIndex.Y]]
         obstacles = nearest_shapes(constraints.obstacles, positions, self.slots)
-        pieces: dict[str, Any] = {
-            "terminal.target": target,
-            "terminal.weights": parameters.terminal.weights,
-            "stage.references": references,
-            "stage.state_weights": stage.state_weights,
-            "stage.control_weights": stage.control_weights,
-            "dynamics": parameters.dynamics.vector,
-            "constraints.speed_limits": constraints.speed_limits,
-            "constraints.reverse_limit": constraints.reverse_limit,
-            "constraints.yaw_rate_limit": constraints.yaw_rate_limit,
-            "constraints.lateral_limit": constraints.lateral_limit,
-            "constraints.required_distance": constraints.robot_radius + constraints.clearance,
-            "constraints.obstacle_penalty": constraints.obstacle_penalty,
-            "constraints.limit_penalty": constraints.limit_penalty,
-            "constraints.reverse_braking_penalty": constraints.reverse_braking_penalty,
-            "constraints.obstacles": pack_obstacles(obstacles, self.slots),
-        }
-        return np.concatenate([np.ravel(pieces[name]) for name in self.shapes])
+        packed = np.empty(self.size)
+        for name, piece in (
+            ("terminal.target", target),
+            ("terminal.weights", parameters.terminal.weights),
+            ("stage.references", references.ravel()),
+            ("stage.state_weights", stage.state_weights),
+            ("stage.control_weights", stage.control_weights),
+            ("dynamics", parameters.dynamics.vector),
+            ("constraints.speed_limits", constraints.speed_limits),
+            ("constraints.reverse_limit", constraints.reverse_limit),
+            ("constraints.yaw_rate_limit", constraints.yaw_rate_limit),
+            ("constraints.lateral_limit", constraints.lateral_limit),
+            ("constraints.required_distance", constraints.robot_radius + constraints.clearance),
+            ("constraints.obstacle_penalty", constraints.obstacle_penalty),
+            ("constraints.limit_penalty", constraints.limit_penalty),
+            ("constraints.reverse_braking_penalty", constraints.reverse_braking_penalty),
+            ("constraints.obstacles", pack_obstacles(obstacles, self.slots).ravel()),
+        ):
+            packed[self.slices[name]] = piece
+        return packed
 
 
 def _unwrapped(yaw: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from mala_drake.errors import BadInput
 
 from .evaluation import Evaluation
 from .gauss_newton import GaussNewtonModel
-from .initial_guess import initial_guesses
+from .initial_guess import InitialGuesses
 from .optimal_control_problem import OptimalControlProblem
 from .optimality import cost_scale, residual, status_of
 from .parameters import InputParameters, MpcParameters
@@ -65,6 +65,7 @@ class MathematicalProgramSolver(ABC):
         self._program = ShootingProgram(problem, hard_clearance=hard_clearance)
         self._gauss_newton = GaussNewtonModel(problem)
         self._evaluation = Evaluation(problem)
+        self._guesses = InitialGuesses(problem)
         self._solver = self._make_solver()
         self._options = SolverOptions()
         self._rounds = -(-iteration_limit // self.round_length)
@@ -97,7 +98,7 @@ class MathematicalProgramSolver(ABC):
 
         # An absurd state overflows somewhere; every result is checked for that, so numpy need not warn as well.
         with np.errstate(over="ignore", invalid="ignore"):
-            guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
+            guesses = self._guesses(state, parameters, warm_start)
             return self._run_rounds(self._evaluation.best(guesses)[0], packed, parameters)
 
     def _run_rounds(self, origin: Vector, packed: Vector, parameters: MpcParameters) -> Solution:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from mala_drake.errors import BadInput
 
 from .globalisation import Iterate
-from .initial_guess import initial_guesses
+from .initial_guess import InitialGuesses
 from .layout import ParameterLayout
 from .optimal_control_problem import OptimalControlProblem
 from .parameters import MpcParameters
@@ -69,6 +69,7 @@ class RealTimeIterationSolver:
             raise BadInput("sqp_iterations", str(sqp_iterations), "a positive number")
         self._problem = problem
         self._sqp_iterations = sqp_iterations
+        self._guesses = InitialGuesses(problem)
         self._kept = _kept_in_feedback(problem.layout)
         self._tools = SqpTools(problem, MakeQpSolver(qp_solver), tolerance=tolerance, hard_clearance=hard_clearance)
         self._prepared: _Prepared | None = None
@@ -135,7 +136,7 @@ class RealTimeIterationSolver:
         evaluation.set(state, packed)
         # An absurd state overflows somewhere; every result is checked for that, so numpy need not warn as well.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            guesses = initial_guesses(state, parameters, self._problem.period, warm_start)
+            guesses = self._guesses(state, parameters, warm_start)
             search = SqpSearch(self._tools, state, packed, parameters, Iterate(*evaluation.best(guesses)))
             search.linearise()
             for _ in range(self._sqp_iterations - 1):

@@ -24,7 +24,7 @@ Mask = NDArray[np.bool_]
 AT_BOUND = 1e-9
 """Distance to a bound of the input set that is round-off."""
 
-_REACH = 0.3  # Rows whose excess is below minus this wait until a step of the others makes it positive.
+_REACH = 0.1  # Rows whose excess is below minus this wait until a step of the others makes it positive.
 _CAUTION = 0.25  # See `_reverse_braking`.
 _PASSES = 4  # At most, until no row that waits is exceeded.
 
@@ -77,8 +77,11 @@ class StepModel:
         flat = condensed.sensitivities.reshape(-1, len(condensed.hessian))
         self._gradient = lin.state_gradients.ravel() @ flat + lin.control_gradients.ravel()
         self._prices = lin.prices / np.maximum(lin.excesses, lin.widths)
-        self._active = lin.excesses > 0
-        self._active_slopes = self._row_slopes(self._active)
+        self._priced = lin.prices > 0
+        self._near = self._priced & (lin.excesses > -_REACH)
+        self._near_slopes = self._row_slopes(self._near)
+        self._active = self._near & (lin.excesses > 0)
+        self._active_slopes = self._near_slopes[self._active[self._near]]
 
     def gradient(self) -> Vector:
         """The cost's gradient at the iterate, shape (3 N,); exact where the condensed part is the iterate's own."""
@@ -105,8 +108,7 @@ class StepModel:
         guess = guess or self._first_guess(lower, upper, hard)
         walls = self._row_slopes(hard)
         margins = lin.widths[0] - lin.excesses[:, : hard.shape[1]][hard]
-        priced = lin.prices > 0
-        chosen = priced & (lin.excesses > -_REACH)
+        chosen, slopes = self._near.copy(), self._near_slopes
         for passes_left in reversed(range(_PASSES)):
             problem = SoftBoxQp(
                 hessian=self._condensed.hessian,
@@ -114,15 +116,16 @@ class StepModel:
                 gradient=self._gradient,
                 lower=lower,
                 upper=upper,
-                rows=np.vstack((self._row_slopes(chosen), walls)),
+                rows=np.concatenate((slopes, walls)),
                 bounds=np.concatenate((-lin.excesses[chosen], margins)),
                 prices=np.concatenate((self._prices[chosen], np.full(len(margins), np.inf))),
             )
             found = solver.solve(problem, np.concatenate((guess.box, guess.rows[chosen], guess.hard[hard])))
-            forgotten = priced & ~chosen & (self._excesses_after(found.point) > 0)
+            forgotten = self._priced & ~chosen & (self._excesses_after(found.point) > 0)
             if not passes_left or not forgotten.any():
                 break
             chosen |= forgotten
+            slopes = self._row_slopes(chosen)
         rows, clearance = np.zeros_like(lin.excesses), np.zeros(hard.shape)
         rows[chosen], clearance[hard] = np.split(found.row_duals, [len(found.row_duals) - len(margins)])
         before = 0.5 * self._prices[chosen] @ np.maximum(lin.excesses[chosen], 0.0) ** 2

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.buffered_function import BufferedFunction
-from mala_drake.control.initial_guess import initial_guesses
+from mala_drake.control.initial_guess import InitialGuesses
 from mala_drake.control.model import STATE_SIZE
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.parameters import MpcParameters
@@ -58,6 +58,7 @@ class ValueFunctions:
         self.columns = Columns(problem.layout)
         self._problem = problem
         self._solver = solver
+        self._guesses = InitialGuesses(problem)
         self._interior_point = InteriorPoint(problem, barrier=barrier)
         self._gradient = BufferedFunction(self._interior_point.functions.parameter_gradient)
 
@@ -87,7 +88,7 @@ class ValueFunctions:
             raise BadInput("action", str(action), f"three numbers from {lower} to {upper}")
         packed = self._problem.pack(z, parameters)
         self._interior_point.sweeps.set_parameters(z, packed)
-        starts = [guess.copy() for guess in initial_guesses(z, parameters, self._problem.period, warm_start)]
+        starts = self._guesses(z, parameters, warm_start)
         for start in starts:
             start[0] = first
         costs = [self._interior_point.sweeps.forward(start)[1] for start in starts]
