@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pydrake.systems.framework import LeafSystem
 
-from mala_drake.control import MakeSolver, OptimalControlProblem, Solver
+from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.leg import LegGuide
 from mala_drake.control.sensitivities.cost_sensitivity import CostSensitivity
 from mala_drake.control.sensitivities.leg_cost import LegCost
+from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.target_sensitivity import TargetSensitivity
 from mala_drake.learning.dynamics_estimator import DynamicsEstimator
 from mala_drake.learning.dynamics_learner import DynamicsLearner
@@ -50,33 +51,28 @@ def make_control_learners(
 
 
 def _target_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> TargetLearner:
-    problem, solver = _solver(control)
     return TargetLearner(
         learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
         yaws={place.name: place.yaw for place in ward.places},
-        sensitivity=TargetSensitivity(problem, solver, guide, congestion),
+        sensitivity=TargetSensitivity(_simulator(control, guide, congestion)),
         mapped=ward.shapes,
         geometric=control.target_evidence == "geometric",
     )
 
 
 def _weight_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> WeightLearner:
-    problem, solver = _solver(control)
     return WeightLearner(
         weights=WeightEstimator([place.name for place in ward.places]) if control.learned_weights else None,
         translation=TranslationEstimator(rate=control.translation_rate) if control.learned_translation else None,
         targets={place.name: (place.x, place.y, place.yaw) for place in ward.places},
         gradient=CostSensitivity(
-            problem,
-            solver,
-            guide,
-            congestion,
-            cost=LegCost(bed=bed_shape(ward), charge_rate=charge_rate, period=problem.period),
+            _simulator(control, guide, congestion),
+            cost=LegCost(bed=bed_shape(ward), charge_rate=charge_rate),
             bedsides=[place.name for place in ward.places if place.category == "bedside"],
         ),
     )
 
 
-def _solver(control: ControlConfig) -> tuple[OptimalControlProblem, Solver]:
+def _simulator(control: ControlConfig, guide: LegGuide, congestion: Congestion) -> LegSimulator:
     problem = OptimalControlProblem(horizon=control.horizon)
-    return problem, MakeSolver(control.solver, problem, **control.solver_options)
+    return LegSimulator(problem, MakeSolver(control.solver, problem, **control.solver_options), guide, congestion)

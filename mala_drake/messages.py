@@ -328,6 +328,20 @@ class LearnedWeights(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class DrivenLeg(Message):
+    """A leg as it was driven: all that is needed to simulate it."""
+
+    action: Action = Action()
+    initial_state: tuple[float, ...] = (0.0,) * 6  # As the controller's model has it.
+    target: tuple[float, float, float] = (0.0, 0.0, 0.0)  # The pose that it was to end in: metres, radians.
+    carrying: bool = False  # Whether the gripper held something.
+    obstacles: tuple[Shape, ...] = ()  # What the sensor saw.
+    preferences: tuple[float, ...] = (0.2,) * 5
+    weights: LearnedWeights = LearnedWeights()
+    dynamics: LearnedDynamics = LearnedDynamics()
+
+
+@dataclass(frozen=True, slots=True)
 class EpisodeReport(Message):
     """One task as it was executed, for the patient, the learners and the record. `sequence` is the task's."""
 

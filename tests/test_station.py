@@ -108,7 +108,7 @@ def test_the_weight_learner_is_there_when_it_is_wanted(assert_port_box, weights,
     scenario.control.learned_weights, scenario.control.learned_translation = weights, translation
     station = mut.MakeCareStation(scenario)
     assert ("mpc_controller", "learned_weights") not in open_inputs(station, OURS)
-    names = ("learned_targets", "learned_dynamics")
+    names = ("learned_dynamics", "learned_targets")
     assert open_inputs(station, ["weight_learner"]) == [("weight_learner", name) for name in names]
     assert_port_box(station.GetSubsystemByName("weight_learner"))
     state = mut.learner_states_of(station, station.CreateDefaultContext())["weight_learner"]

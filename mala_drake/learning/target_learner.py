@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 from pydrake.common.value import Value
-from pydrake.systems.framework import Context, State
+from pydrake.systems.framework import Context, DiscreteValues
 
 from mala_drake.clock import LEARN_OFFSET, TICK
 from mala_drake.learning.abstract_learner import FloatArray
-from mala_drake.learning.learner_system import LearnerSystem
+from mala_drake.learning.leg_learner import LegLearner
 from mala_drake.learning.target_estimator import (
     PLATEAU_MARGIN,
     MissingAtom,
@@ -25,14 +25,11 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
-    LearnedDynamics,
+    DrivenLeg,
     LearnedTargets,
-    MagnetCommand,
-    Message,
     Obstacles,
     Outcome,
     PlaceMismatch,
-    Preferences,
     Shape,
 )
 from mala_drake.ward.routes import GOAL_DISTANCE
@@ -49,30 +46,10 @@ STANDING_DISTANCE = 0.5
 _NOT_THERE = (Outcome.BLOCKED, Outcome.WAYPOINT_ALLOCATION, Outcome.STEP_BUDGET)  # Legs that could not be driven.
 
 
-@dataclass(frozen=True, slots=True)
-class _Watching(Message):
-    """The newest leg: its action, the state that it began in, where it was to end; and the newest report seen."""
-
-    leg: Action = Action()
-    began: tuple[float, ...] = (0.0,) * 6
-    target: tuple[float, float] = (0.0, 0.0)
-    seen: int = 0
-
-
 class LegSensitivity(Protocol):
     """Who knows how the end of a leg moves with its target."""
 
-    def __call__(
-        self,
-        initial_state: FloatArray,
-        target: tuple[float, float, float],
-        obstacles: Sequence[Shape],
-        *,
-        action: Action,
-        carrying: bool,
-        weights: Sequence[float],
-        learned: LearnedDynamics,
-    ) -> FloatArray:
+    def __call__(self, leg: DrivenLeg) -> FloatArray:
         """D (x, y at the end) / d (x, y of the target), shape (2, 2).
 
         Raises:
@@ -80,7 +57,7 @@ class LegSensitivity(Protocol):
         """
 
 
-class TargetLearner(LearnerSystem):
+class TargetLearner(LegLearner):
     """Learns where legs to places are to end, from what is missing at their ends.
 
     .. pydrake_system::
@@ -88,15 +65,15 @@ class TargetLearner(LearnerSystem):
         name: TargetLearner
         input_ports:
         - action
-        - leg_report
-        - in_place_report
-        - place_mismatch
-        - reach_mismatch
         - robot_state
         - obstacles
         - magnet
         - preferences
         - learned_dynamics
+        - leg_report
+        - in_place_report
+        - place_mismatch
+        - reach_mismatch
         output_ports:
         - learned_targets
 
@@ -115,7 +92,8 @@ class TargetLearner(LearnerSystem):
 
     Targets stay clear of what is on the map and of what the sensor sees at the end of the leg.
 
-    The discrete state is the learner's own vector, the abstract state what is known of the leg under way.
+    The discrete state is the learner's own vector and the sequence of the last report; the abstract state is what is
+    known of the last legs.
     """
 
     def __init__(
@@ -142,48 +120,39 @@ class TargetLearner(LearnerSystem):
         self._sensitivity = sensitivity
         self._mapped = tuple(mapped)
         self._geometric = geometric
-        self._action = self.DeclareAbstractInputPort("action", Value(Action()))
+        self._declare_legs()
         self._leg_report = self.DeclareAbstractInputPort("leg_report", Value(ActionReport()))
         self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._place_mismatch = self.DeclareAbstractInputPort("place_mismatch", Value(PlaceMismatch()))
         self._reach_mismatch = self.DeclareAbstractInputPort("reach_mismatch", Value(PlaceMismatch()))
-        self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
-        self._obstacles = self.DeclareAbstractInputPort("obstacles", Value(Obstacles()))
-        self._magnet = self.DeclareAbstractInputPort("magnet", Value(MagnetCommand()))
-        self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
-        self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
-        self._watching = self.DeclareAbstractState(Value(_Watching()))
-        self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=0)
-        self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, LEARN_OFFSET, self._update)
+        self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=1)
+        self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
     def _learned(self, context: Context) -> LearnedTargets:
         return self._learner.learned(self.learner_state(context))
 
-    def _update(self, context: Context, state: State) -> None:
-        watching: _Watching = context.get_abstract_state(self._watching).get_value()
-        learned = self.learner_state(context)
+    def _target(self, context: Context, place: str) -> tuple[float, float, float]:
+        if place not in self._learner.places:
+            return (0.0, 0.0, 0.0)
+        return (*self._learner.target(self.learner_state(context), place), self._yaws[place])
+
+    def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
+        state, (seen,) = self.learner_state(context), self._marks(context)
         action: Action = self._action.Eval(context)
-        if action.kind is ActionKind.MOVE and action.sequence > watching.leg.sequence:
-            began = tuple(self._robot_state.Eval(context).tolist())
-            known = action.place in self._learner.places
-            target = self._learner.target(learned, action.place) if known else watching.target
-            watching = replace(watching, leg=action, began=began, target=target)
         port = self._leg_report if action.kind is ActionKind.MOVE else self._in_place_report
         report: ActionReport = port.Eval(context)
-        if report.finished and report.sequence == action.sequence and report.sequence > watching.seen:
-            watching = replace(watching, seen=report.sequence)
-            learned = self._learned_from(context, learned, watching, report.outcome)
-        state.get_mutable_discrete_state().set_value(learned)
-        state.get_mutable_abstract_state(self._watching).set_value(watching)
+        if report.finished and report.sequence == action.sequence and report.sequence > seen:
+            seen = report.sequence
+            state = self._learned_from(context, state, action, report.outcome)
+        discrete_state.set_value(np.append(state, seen))
 
-    def _learned_from(self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome) -> FloatArray:
+    def _learned_from(self, context: Context, state: FloatArray, action: Action, outcome: Outcome) -> FloatArray:
         """The learner's state after an action that has ended."""
-        action: Action = self._action.Eval(context)
-        evidence = None
+        leg, evidence = self._newest_leg(context), None
         if action.kind is ActionKind.MOVE:
-            evidence = self._evidence_of_leg(context, state, watching, outcome)
+            evidence = self._evidence_of_leg(context, state, leg, outcome)
         elif outcome is Outcome.OUT_OF_REACH and not self._geometric:
-            evidence = self._evidence_of_reach(context, watching)
+            evidence = self._evidence_of_reach(context, leg)
         if evidence is None:
             return state
         # The place as it is seen is where it is; the plateaus of the atoms leave room.
@@ -192,52 +161,43 @@ class TargetLearner(LearnerSystem):
         return self._learner.update(state, action.place, evidence, is_free=lambda point: clear(point) >= distance)
 
     def _evidence_of_leg(
-        self, context: Context, state: FloatArray, watching: _Watching, outcome: Outcome
+        self, context: Context, state: FloatArray, leg: DrivenLeg, outcome: Outcome
     ) -> TargetEvidence | None:
         mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
-        if mismatch.place not in self._learner.places or mismatch.place != watching.leg.place:
+        if mismatch.place not in self._learner.places or mismatch.place != leg.action.place:
             return None
         offset = np.array(mismatch.offset) if self._geometric and mismatch.offset is not None else None
         if outcome is Outcome.SUCCESS:
             if self._learner.is_settled(state, mismatch.place, mismatch.error, offset):
                 return None
-            sensitivity = self._sensitivity_of(context, watching)
-            return TargetEvidence((_missing(mismatch, sensitivity),), offset, sensitivity, watching.target)
-        if outcome not in _NOT_THERE or (offset is None and self._clearance(context)(watching.target) >= GOAL_DISTANCE):
+            sensitivity = self._sensitivity_of(context, leg)
+            return TargetEvidence((_missing(mismatch, sensitivity),), offset, sensitivity, leg.target[:2])
+        if outcome not in _NOT_THERE or (offset is None and self._clearance(context)(leg.target[:2]) >= GOAL_DISTANCE):
             return None
         # What is missing where the robot is says where the target should be, wherever it was.
         x, y = self._robot_state.Eval(context)[:2].tolist()
         return TargetEvidence((_missing(mismatch, np.eye(2)),), offset, np.eye(2), (x, y))
 
-    def _evidence_of_reach(self, context: Context, watching: _Watching) -> TargetEvidence | None:
+    def _evidence_of_reach(self, context: Context, leg: DrivenLeg) -> TargetEvidence | None:
         reach: PlaceMismatch = self._reach_mismatch.Eval(context)
-        if reach.error == 0.0 or reach.place not in self._learner.places or reach.place != watching.leg.place:
+        if reach.error == 0.0 or reach.place not in self._learner.places or reach.place != leg.action.place:
             return None
-        sensitivity = self._sensitivity_of(context, watching)
+        sensitivity = self._sensitivity_of(context, leg)
         missing = [_missing(reach, sensitivity, _REACH_MARGIN)]
         place: PlaceMismatch = self._place_mismatch.Eval(context)
         if place.place == reach.place:  # The robot still stands where the leg has ended.
             missing.append(_missing(place, sensitivity))
-        return TargetEvidence(tuple(missing), None, sensitivity, watching.target)
+        return TargetEvidence(tuple(missing), None, sensitivity, leg.target[:2])
 
-    def _sensitivity_of(self, context: Context, watching: _Watching) -> FloatArray:
+    def _sensitivity_of(self, context: Context, leg: DrivenLeg) -> FloatArray:
         """D (x, y at the end) / d (x, y of the target) of the newest leg."""
-        seen: Obstacles = self._obstacles.Eval(context)
-        known = self._learned_dynamics.HasValue(context)
-        place = watching.leg.place
+        # The gripper is that of now, which after an action in place may hold more than on the way.
+        leg = replace(leg, carrying=bool(self._magnet.Eval(context).held))
         found: FloatArray | None
         try:
-            found = self._sensitivity(
-                np.array(watching.began),
-                (*watching.target, self._yaws[place]),
-                seen.shapes,
-                action=watching.leg,
-                carrying=bool(self._magnet.Eval(context).held),
-                weights=self._preferences.Eval(context).estimate,
-                learned=self._learned_dynamics.Eval(context) if known else LearnedDynamics(),
-            )
+            found = self._sensitivity(leg)
         except RuntimeError as error:
-            _logger.info("the leg to %s has no sensitivity: simulated, it %s", place, error)
+            _logger.info("the leg to %s has no sensitivity: simulated, it %s", leg.action.place, error)
             found = None
         return plausible_sensitivity(found)
 

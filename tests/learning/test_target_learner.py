@@ -13,6 +13,7 @@ from mala_drake.messages import (
     Action,
     ActionKind,
     ActionReport,
+    DrivenLeg,
     LearnedDynamics,
     LearnedTargets,
     MagnetCommand,
@@ -63,8 +64,8 @@ class Bench:
         }
         self._robot_state = self.system.GetInputPort("robot_state").FixValue(self.context, np.zeros(6))
 
-    def _sensitivity(self, initial_state, target, obstacles, **how):
-        self.legs.append((tuple(initial_state), target, obstacles, how))
+    def _sensitivity(self, leg):
+        self.legs.append(leg)
         if self._error:
             raise RuntimeError(self._error)
         return np.eye(2)
@@ -109,23 +110,15 @@ def test_the_leg_that_is_simulated_is_the_one_that_was_driven():
     bench = Bench()
     seen = Obstacles((Shape("cart", 9.0, 9.0, radius=0.3),))
     bench.send(magnet=MagnetCommand((("box", 0),)), obstacles=seen).drive(1)
-    ((began, target, obstacles, how),) = bench.legs
-    assert began == (0.0, 1.0, 0.1, 0.0, 0.0, 0.0)
-    assert target == (-3.0, 15.0, 0.0)
-    assert obstacles == seen.shapes
-    assert how == {
-        "action": move(1),
-        "carrying": True,
-        "weights": Preferences().estimate,
-        "learned": LearnedDynamics(),
-    }
+    (leg,) = bench.legs
+    assert leg == DrivenLeg(move(1), (0.0, 1.0, 0.1, 0.0, 0.0, 0.0), (-3.0, 15.0, 0.0), True, seen.shapes)
 
 
 def test_the_leg_is_simulated_over_the_dynamics_that_were_learned():
     bench, learned = Bench(), LearnedDynamics((5.0, 0.0, 0.1, 1.0, 1.0, 0.9), (0.1,) * 6, 40)
     bench.system.GetInputPort("learned_dynamics").FixValue(bench.context, Value(learned))
     bench.drive(1)
-    assert bench.legs[0][3]["learned"] == learned
+    assert bench.legs[0].dynamics == learned
 
 
 def test_the_place_as_it_is_seen_counts_only_if_wanted():
@@ -181,8 +174,8 @@ def test_what_is_out_of_reach_moves_the_target_of_the_leg_before():
     bench.drive(1, AT_PANTRY)
     ((_, x, y),) = bench.work(2, SHORT).targets
     assert (x, y) == pytest.approx((-3.0, 15.0 + 0.4 + 0.15))
-    ((began, target, _, how),) = bench.legs  # It is simulated, once that is needed.
-    assert (began[:2], target, how["action"]) == ((0.0, 1.0), (-3.0, 15.0, 0.0), move(1))
+    (leg,) = bench.legs  # It is simulated, once that is needed.
+    assert (leg.initial_state[:2], leg.target, leg.action) == ((0.0, 1.0), (-3.0, 15.0, 0.0), move(1))
 
 
 def test_reach_and_place_are_minded_at_once():

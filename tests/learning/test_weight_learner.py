@@ -15,6 +15,7 @@ from mala_drake.messages import (
     Action,
     ActionEvaluation,
     ActionKind,
+    DrivenLeg,
     LearnedDynamics,
     LearnedTargets,
     LearnedWeights,
@@ -29,6 +30,7 @@ TARGETS = {"pantry": (-3.0, 15.0, 0.0), "stove": (-3.0, 20.5, 3.0)}
 WEIGHTS = (0.4, 0.3, 0.1, 0.1, 0.1)
 PRICES = (0.004, 1.0, 0.1, 0.01, 0.1)
 GRADIENT = np.array([0.1, 0.2, -0.1, 0.0, 0.05, 0.15, -0.3, 0.1, 0.2])
+FAR = Shape("far", 40.0, 40.0, radius=0.1)
 BEGAN = (1.0, 2.0, 0.3, 0.0, 0.0, 0.0)
 
 
@@ -58,7 +60,7 @@ class Bench:
             for name, value in {
                 "action": Action(),
                 "action_evaluation": ActionEvaluation(),
-                "obstacles": Obstacles((Shape("far", 40.0, 40.0, radius=0.1),)),
+                "obstacles": Obstacles((FAR,)),
                 "magnet": MagnetCommand(),
                 "preferences": Preferences(estimate=WEIGHTS),
             }.items()
@@ -68,8 +70,9 @@ class Bench:
     def fix(self, name, value):
         return self.system.GetInputPort(name).FixValue(self.context, Value(value))
 
-    def _gradient(self, initial_state, target, obstacles, **how):
-        self.legs.append((tuple(initial_state), target, obstacles, how))
+    def _gradient(self, leg, *, prices):
+        assert prices == PRICES
+        self.legs.append(leg)
         if self._error:
             raise RuntimeError(self._error)
         return GRADIENT
@@ -112,17 +115,8 @@ def test_what_is_not_wanted_is_not_learned():
 def test_the_leg_is_simulated_as_it_began():
     bench = Bench()
     bench.drive()
-    ((began, target, obstacles, how),) = bench.legs
-    assert (began, target) == (BEGAN, TARGETS["pantry"])
-    assert [shape.name for shape in obstacles] == ["far"]
-    assert how == {
-        "action": move(1),
-        "carrying": False,
-        "weights": WEIGHTS,
-        "prices": PRICES,
-        "learned": LearnedWeights(),
-        "dynamics": LearnedDynamics(),
-    }
+    (leg,) = bench.legs
+    assert leg == DrivenLeg(move(1), BEGAN, TARGETS["pantry"], obstacles=(FAR,), preferences=WEIGHTS)
 
 
 def test_it_is_simulated_with_what_the_controller_was_told_when_it_began():
@@ -133,10 +127,10 @@ def test_it_is_simulated_with_what_the_controller_was_told_when_it_began():
     bench.tick(magnet=MagnetCommand((("bread", 0),)))
     first = bench.drive()
     bench.drive(3)
-    (_, target, _, how), (_, _, _, again) = bench.legs
-    assert target == (-2.5, 15.5, 0.0)
-    assert (how["carrying"], how["dynamics"]) == (True, dynamics)
-    assert (how["learned"], again["learned"]) == (LearnedWeights(), first)
+    leg, again = bench.legs
+    assert leg.target == (-2.5, 15.5, 0.0)
+    assert (leg.carrying, leg.dynamics) == (True, dynamics)
+    assert (leg.weights, again.weights) == (LearnedWeights(), first)
 
 
 def test_a_leg_right_after_another_is_learned_from_too():
@@ -145,7 +139,7 @@ def test_a_leg_right_after_another_is_learned_from_too():
     bench.tick(action=move(2, "stove"), action_evaluation=evaluated(move(1)), state=(5.0,) * 6)
     learned = bench.tick(action=Action(3, ActionKind.IN_PLACE, "wait"), action_evaluation=evaluated(move(2, "stove")))
     assert [place for place, _ in learned.factors] == ["pantry", "stove"]
-    assert [began for began, *_ in bench.legs] == [BEGAN, (5.0,) * 6]
+    assert [leg.initial_state for leg in bench.legs] == [BEGAN, (5.0,) * 6]
 
 
 def test_a_leg_is_learned_from_once():

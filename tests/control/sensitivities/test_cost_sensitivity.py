@@ -13,11 +13,12 @@ from mala_drake.control.action_parameters import EMPTY_HANDED, learned_style
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.leg_cost import LegCost
+from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import LegRecorder
 from mala_drake.control.sensitivities.weight_schedule import weight_schedule
 from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION
 from mala_drake.learning.weight_estimator import WeightEstimator
-from mala_drake.messages import Action, ActionKind, LearnedDynamics, LearnedWeights, Shape
+from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights, Shape
 from mala_drake.robot.drive_charge import charge_rate
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
@@ -42,10 +43,10 @@ def problem():
     return OptimalControlProblem()
 
 
-def gradient(problem, rules=None, *, bedsides=("there",), **how):
-    own = mut.CostSensitivity(*tools(problem, rules), cost=COST, bedsides=bedsides)
-    options = {"learned": LearnedWeights(), "dynamics": LearnedDynamics(), "prices": PRICES, "weights": WEIGHTS, **how}
-    return own(np.zeros(6), THERE, HALL.shapes, action=GO, carrying=False, **options)
+def gradient(problem, rules=None, *, prices=PRICES, bedsides=("there",), **how):
+    own = mut.CostSensitivity(LegSimulator(*tools(problem, rules)), cost=COST, bedsides=bedsides)
+    leg = DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, **how)
+    return own(leg, prices=prices)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_the_leg_is_driven_as_it_was_with_what_was_learned_then(problem, nominal
     factors = LearnedWeights(factors=(("there", (2.0, 1.0, 0.5, 1.0)),))
     gains = LearnedWeights(gains=tuple(map(tuple, (1.2 * DEFAULT_TRANSLATION.gains).tolist())))
     heavy = LearnedDynamics((5.0, 0.0, 0.0, 0.9, 0.9, 0.9), (0.1,) * 6, updates=9)
-    legs = [gradient(problem, learned=factors), gradient(problem, learned=gains), gradient(problem, dynamics=heavy)]
+    legs = [gradient(problem, weights=factors), gradient(problem, weights=gains), gradient(problem, dynamics=heavy)]
     for each in legs:
         assert np.abs(each - nominal).max() > 1e-3 * np.abs(nominal).max()
     style = learned_style(GO, factors, carrying=False)
@@ -115,21 +116,21 @@ def test_the_mismatch_to_a_wrong_prediction_falls_by_the_learned_weights(problem
     for _ in range(4):
         learned = LearnedWeights(learner.learned(state))
         mismatches.append(cost(learned) - predicted)
-        state = learner.update(state, "there", mismatches[-1], gradient(problem, learned=learned))
+        state = learner.update(state, "there", mismatches[-1], gradient(problem, weights=learned))
     assert abs(mismatches[-1]) < 0.5 * abs(mismatches[0])
     assert np.abs(np.log(learner.factors(state, "there"))).max() > 0.05
 
 
 def breaking(monkeypatch, at):
     """Makes the step `at` of every closed loop one without a derivative."""
-    whole = mut.ClosedLoop.run
+    whole = ClosedLoop.run
 
     def broken(self, *arguments):
         steps = list(whole(self, *arguments).steps)
         steps[at] = replace(steps[at], solved=False)
         return ClosedLoopRun(tuple(steps))
 
-    monkeypatch.setattr(mut.ClosedLoop, "run", broken)
+    monkeypatch.setattr(ClosedLoop, "run", broken)
 
 
 def test_what_comes_after_a_break_counts_if_it_is_most_of_the_leg(problem, nominal, monkeypatch):

@@ -13,8 +13,9 @@ from mala_drake.control.action_parameters import EMPTY_HANDED
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
+from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
-from mala_drake.messages import Action, ActionKind, LearnedDynamics
+from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
 from mala_drake.ward.ward_map import Ward
@@ -23,6 +24,7 @@ HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
 THERE = (2.0, 0.6, 0.5)
 GO = Action(1, ActionKind.MOVE, "go_to_there", ("robot1",), "there")
 WEIGHTS = (0.2,) * 5
+NOMINAL_ROBOT = LearnedDynamics()
 
 
 def tools(problem, rules=None):
@@ -36,16 +38,16 @@ def problem():
     return OptimalControlProblem()
 
 
-def sensitivity(problem, rules=None, learned=mut.NOTHING_LEARNED):
-    own = mut.TargetSensitivity(*tools(problem, rules))
-    return own(np.zeros(6), THERE, HALL.shapes, action=GO, carrying=False, weights=WEIGHTS, learned=learned)
+def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT):
+    own = mut.TargetSensitivity(LegSimulator(*tools(problem, rules)))
+    return own(DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, dynamics=learned))
 
 
 # A robot that skids, answers less and turns wide.
 LEARNED = LearnedDynamics((3.0, 0.2, 0.3, 0.8, 0.9, 0.7), (0.01,) * 6, 100)
 
 
-@pytest.mark.parametrize("learned", [mut.NOTHING_LEARNED, LEARNED], ids=["nominal", "learned"])
+@pytest.mark.parametrize("learned", [NOMINAL_ROBOT, LEARNED], ids=["nominal", "learned"])
 def test_it_is_that_of_differences_of_the_closed_loop(problem, learned):
     dynamics = DynamicsParameters(*learned.coefficients) if learned.updates else None
     recorder = LegRecorder(*tools(problem))
@@ -65,14 +67,14 @@ def test_it_is_that_of_differences_of_the_closed_loop(problem, learned):
 
 def breaking(monkeypatch, at):
     """Makes the step `at` of every closed loop one without a derivative."""
-    whole = mut.ClosedLoop.run
+    whole = ClosedLoop.run
 
     def broken(self, *arguments):
         steps = list(whole(self, *arguments).steps)
         steps[at] = replace(steps[at], solved=False)
         return ClosedLoopRun(tuple(steps))
 
-    monkeypatch.setattr(mut.ClosedLoop, "run", broken)
+    monkeypatch.setattr(ClosedLoop, "run", broken)
 
 
 def test_a_step_without_a_derivative_long_before_the_end_is_forgotten(problem, monkeypatch):
