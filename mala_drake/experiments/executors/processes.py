@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
@@ -25,6 +25,10 @@ _ENVIRONMENT = {
 """What libraries read when they are loaded. Processes that compute side by side want one numerical thread each, and
 memory in large pages, which saves an episode a twentieth of its processor time."""
 
+_KEYS_OF_A_PROCESS = 10
+"""A process that has served so many keys is replaced at the next one. Drake's bindings never give back a diagram with
+systems written in Python (Drake's issue 22515), some 15 MB each, but the end of the process does."""
+
 
 @dataclass(slots=True)
 class _Worker:
@@ -32,13 +36,14 @@ class _Worker:
     connection: Connection
     key: Hashable  # Of the call that it works on, or worked on last.
     busy: bool = False
+    keys: int = 0  # How many it has served.
 
 
 class ProcessExecutor(AbstractExecutor):
     """Computes in spawned processes with one numerical thread each.
 
     They ignore the keyboard's interrupt, which is for the process that conducts them, and end when it does, however it
-    ends. The one whose call makes it die is replaced at the next call.
+    ends. The one whose call makes it die is replaced at the next call, and so is one that has served many keys.
     """
 
     __slots__ = ("_function", "_jobs", "_workers")
@@ -65,7 +70,12 @@ class ProcessExecutor(AbstractExecutor):
         if not free or (free[0].key != key and len(self._workers) < self._jobs):
             free.insert(0, self._start())
         worker = free[0]
-        worker.key, worker.busy = key, True
+        if worker.key != key:
+            if worker.keys == _KEYS_OF_A_PROCESS:
+                self._end([worker])
+                worker = self._start()
+            worker.key, worker.keys = key, worker.keys + 1
+        worker.busy = True
         with suppress(BrokenPipeError):  # It died while it was free: the next look at it tells how.
             worker.connection.send(argument)
 
@@ -85,12 +95,7 @@ class ProcessExecutor(AbstractExecutor):
 
     def close(self) -> None:
         """Ends all processes at once."""
-        for worker in self._workers:
-            worker.process.kill()
-        for worker in self._workers:
-            worker.process.join()
-            worker.connection.close()
-        self._workers.clear()
+        self._end(list(self._workers))
 
     def _start(self) -> _Worker:
         context = multiprocessing.get_context("spawn")
@@ -102,6 +107,14 @@ class ProcessExecutor(AbstractExecutor):
         worker = _Worker(process, ours, None)
         self._workers.append(worker)
         return worker
+
+    def _end(self, workers: Sequence[_Worker]) -> None:
+        for worker in workers:
+            worker.process.kill()
+        for worker in workers:
+            worker.process.join()
+            worker.connection.close()
+            self._workers.remove(worker)
 
     def _bury(self, worker: _Worker) -> str:
         """Forgets a process that has died; says how it did."""

@@ -52,6 +52,19 @@ def test_a_call_that_raises_is_told_and_its_process_goes_on():
         assert executor.next_finished().result == place
 
 
+def test_a_process_is_replaced_when_it_has_served_many_keys(monkeypatch):
+    monkeypatch.setattr(mut, "_KEYS_OF_A_PROCESS", 2)
+    with mut.ProcessExecutor(eval, jobs=1) as executor:
+        places = []
+        for key in "aabbcd":
+            executor.submit(key, "__import__('os').getpid()")
+            places.append(executor.next_finished().result)
+        assert len(multiprocessing.active_children()) == 1
+    first, second = places[0], places[4]
+    assert places == [first] * 4 + [second] * 2
+    assert first != second
+
+
 @pytest.mark.parametrize(
     ("code", "words"),
     [
