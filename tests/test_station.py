@@ -86,7 +86,8 @@ def displaced(**control):
 def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
     station = mut.MakeCareStation(displaced(learned_targets=True))
     assert ("mpc_controller", "learned_targets") not in open_inputs(station, OURS)
-    assert open_inputs(station, ["target_learner"]) == [("target_learner", "learned_dynamics")]
+    names = ("learned_dynamics", "learned_weights")
+    assert open_inputs(station, ["target_learner"]) == [("target_learner", name) for name in names]
     assert_port_box(station.GetSubsystemByName("target_learner"))
     assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
 

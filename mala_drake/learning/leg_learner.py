@@ -14,6 +14,7 @@ from mala_drake.messages import (
     ActionKind,
     DrivenLeg,
     LearnedDynamics,
+    LearnedWeights,
     MagnetCommand,
     Message,
     Obstacles,
@@ -32,10 +33,10 @@ class _Legs(Message):
 class LegLearner(LearnerSystem):
     """A system that has legs simulated as they were driven, to learn from them.
 
-    It takes down how a leg begins, in the tick in which the controller accepts it: the state, the target and what the
-    gripper holds. What the sensor sees, the preferences and the dynamics are those of the moment in which a leg is
-    asked for. Since a leg may be evaluated in the tick in which the next one begins, two of them are remembered.
-    `learned_dynamics` need not be connected.
+    It takes down how a leg begins, in the tick in which the controller accepts it: the state, the target, the learned
+    weights and what the gripper holds. What the sensor sees, the preferences and the dynamics are those of the moment
+    in which a leg is asked for. Since a leg may be evaluated in the tick in which the next one begins, two of them are
+    remembered. `learned_dynamics` need not be connected.
     """
 
     def _declare_legs(self) -> None:
@@ -47,11 +48,16 @@ class LegLearner(LearnerSystem):
         self._preferences = self.DeclareAbstractInputPort("preferences", Value(Preferences()))
         self._learned_dynamics = self.DeclareAbstractInputPort("learned_dynamics", Value(LearnedDynamics()))
         self._legs = self.DeclareAbstractState(Value(_Legs()))
-        # Learners update discrete state: at one instant that comes later, so that it knows of a leg which has begun.
+        # Learners update discrete state, which at one instant comes later. So what a leg that is over has taught is not
+        # yet among the weights of the one that has just begun, as the controller has not been told it either.
         self.DeclarePeriodicUnrestrictedUpdateEvent(TICK, LEARN_OFFSET, self._note_leg)
 
     def _target(self, context: Context, place: str) -> tuple[float, float, float]:
         """The pose that the controller is to drive to for a place, whatever it is for one that is not known."""
+        raise NotImplementedError
+
+    def _weights_told(self, context: Context) -> LearnedWeights:
+        """What the controller is told of its weights."""
         raise NotImplementedError
 
     def _note_leg(self, context: Context, state: State) -> None:
@@ -64,6 +70,7 @@ class LegLearner(LearnerSystem):
             initial_state=tuple(self._robot_state.Eval(context).tolist()),
             target=self._target(context, action.place),
             carrying=bool(self._magnet.Eval(context).held),
+            weights=self._weights_told(context),
         )
         state.get_mutable_abstract_state(self._legs).set_value(_Legs(leg, legs.newest))
 

@@ -27,6 +27,7 @@ from mala_drake.messages import (
     ActionReport,
     DrivenLeg,
     LearnedTargets,
+    LearnedWeights,
     Obstacles,
     Outcome,
     PlaceMismatch,
@@ -74,6 +75,7 @@ class TargetLearner(LegLearner):
         - in_place_report
         - place_mismatch
         - reach_mismatch
+        - learned_weights
         output_ports:
         - learned_targets
 
@@ -87,7 +89,8 @@ class TargetLearner(LegLearner):
 
     A leg that has stopped is simulated in closed loop over the controller's model, from the state that the robot began
     it in, to find out how its end moves with its target. `learned_dynamics` is that model, if it is connected and there
-    is one. What happens to the robot is not touched: the planner sees the mismatch as ever, and its next leg to the
+    is one; `learned_weights` are those of the controller, as it was told them when the leg began, if they are
+    connected. What happens to the robot is not touched: the planner sees the mismatch as ever, and its next leg to the
     place goes to the new target.
 
     Targets stay clear of what is on the map and of what the sensor sees at the end of the leg.
@@ -125,6 +128,7 @@ class TargetLearner(LegLearner):
         self._in_place_report = self.DeclareAbstractInputPort("in_place_report", Value(ActionReport()))
         self._place_mismatch = self.DeclareAbstractInputPort("place_mismatch", Value(PlaceMismatch()))
         self._reach_mismatch = self.DeclareAbstractInputPort("reach_mismatch", Value(PlaceMismatch()))
+        self._learned_weights = self.DeclareAbstractInputPort("learned_weights", Value(LearnedWeights()))
         self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=1)
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
@@ -135,6 +139,10 @@ class TargetLearner(LegLearner):
         if place not in self._learner.places:
             return (0.0, 0.0, 0.0)
         return (*self._learner.target(self.learner_state(context), place), self._yaws[place])
+
+    def _weights_told(self, context: Context) -> LearnedWeights:
+        connected = self._learned_weights.HasValue(context)
+        return self._learned_weights.Eval(context) if connected else LearnedWeights()
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         state, (seen,) = self.learner_state(context), self._marks(context)

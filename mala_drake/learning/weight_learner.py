@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -54,7 +53,7 @@ class WeightLearner(LegLearner):
 
     Factors of the weights by the place that a leg leads to (p^g), the translation from preferences to weights, or both
     move along the gradient of the leg's cost, such that the mismatch E^C falls. For it the leg is simulated in closed
-    loop over the controller's model, as it began and with the weights learned so far. `learned_targets` and
+    loop over the controller's model, as it began and with the weights that it began with. `learned_targets` and
     `learned_dynamics` are what the controller is told, where they are connected.
 
     A leg that failed, or whose cost has no derivative, teaches nothing. The discrete state is the vectors of both
@@ -106,7 +105,7 @@ class WeightLearner(LegLearner):
             seen = evaluation.action.sequence
             leg = self._leg_of(context, evaluation.action)
             if leg is not None and leg.action.place in self._targets and evaluation.outcome is Outcome.SUCCESS:
-                state = self._after_leg(context, state, leg, evaluation)
+                state = self._after_leg(state, leg, evaluation)
         discrete_state.set_value(np.append(state, seen))
 
     def _target(self, context: Context, place: str) -> tuple[float, float, float]:
@@ -117,11 +116,11 @@ class WeightLearner(LegLearner):
         told: LearnedTargets = self._learned_targets.Eval(context)
         return next(((tx, ty, yaw) for name, tx, ty in told.targets if name == place), (x, y, yaw))
 
-    def _after_leg(
-        self, context: Context, state: FloatArray, leg: DrivenLeg, evaluation: ActionEvaluation
-    ) -> FloatArray:
+    def _weights_told(self, context: Context) -> LearnedWeights:
+        return self._learned(context)
+
+    def _after_leg(self, state: FloatArray, leg: DrivenLeg, evaluation: ActionEvaluation) -> FloatArray:
         """The learners' state after a leg that has ended well."""
-        leg = replace(leg, weights=self._learned(context))
         try:
             gradient = self._gradient(leg, prices=evaluation.prices)
         except RuntimeError as error:

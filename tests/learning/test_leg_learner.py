@@ -14,6 +14,7 @@ from mala_drake.messages import (
     ActionKind,
     DrivenLeg,
     LearnedDynamics,
+    LearnedWeights,
     MagnetCommand,
     Obstacles,
     Preferences,
@@ -37,6 +38,9 @@ class Listener(mut.LegLearner):
 
     def _target(self, context, place):
         return TARGETS.get(place, (0.0, 0.0, 0.0))
+
+    def _weights_told(self, context):
+        return LearnedWeights((("pantry", (float(len(self.seen_by_updates)), 1.0, 1.0, 1.0)),))
 
     def _look(self, context, discrete_state):
         self.seen_by_updates.append(self._newest_leg(context).action)
@@ -91,7 +95,9 @@ def test_before_the_first_leg_there_is_none(bench):
 
 def test_a_leg_is_remembered_as_it_began(bench):
     leg = bench.tick(action=move(1), x=2.0, magnet=MagnetCommand((("bread", 0),)))
-    assert leg == DrivenLeg(move(1), (2.0, 0.0, 0.0, 0.0, 0.0, 0.0), TARGETS["pantry"], carrying=True)
+    weights = LearnedWeights((("pantry", (0.0, 1.0, 1.0, 1.0)),))  # Those before the learner's own update.
+    began = (2.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert leg == DrivenLeg(move(1), began, TARGETS["pantry"], carrying=True, weights=weights)
     assert bench.tick(x=3.0, magnet=MagnetCommand()) == leg
 
 

@@ -16,6 +16,7 @@ from mala_drake.messages import (
     DrivenLeg,
     LearnedDynamics,
     LearnedTargets,
+    LearnedWeights,
     MagnetCommand,
     Obstacles,
     Outcome,
@@ -119,6 +120,16 @@ def test_the_leg_is_simulated_over_the_dynamics_that_were_learned():
     bench.system.GetInputPort("learned_dynamics").FixValue(bench.context, Value(learned))
     bench.drive(1)
     assert bench.legs[0].dynamics == learned
+
+
+def test_the_leg_is_simulated_with_the_weights_that_it_was_driven_with():
+    bench, told = Bench(), LearnedWeights((("pantry", (2.0, 1.0, 0.5, 1.0)),))
+    port = bench.system.GetInputPort("learned_weights").FixValue(bench.context, Value(told))
+    bench.send(action=move(1), leg_report=ActionReport(1)).tick()
+    port.GetMutableData().set_value(LearnedWeights())  # Those are for the next leg.
+    bench.send(leg_report=ActionReport(1, Outcome.SUCCESS), place_mismatch=MISSING).tick()
+    bench.drive(2)
+    assert [leg.weights for leg in bench.legs] == [told, LearnedWeights()]
 
 
 def test_the_place_as_it_is_seen_counts_only_if_wanted():

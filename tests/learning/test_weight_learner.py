@@ -140,6 +140,7 @@ def test_a_leg_right_after_another_is_learned_from_too():
     learned = bench.tick(action=Action(3, ActionKind.IN_PLACE, "wait"), action_evaluation=evaluated(move(2, "stove")))
     assert [place for place, _ in learned.factors] == ["pantry", "stove"]
     assert [leg.initial_state for leg in bench.legs] == [BEGAN, (5.0,) * 6]
+    assert [leg.weights for leg in bench.legs] == [LearnedWeights()] * 2  # The controller had not been told others.
 
 
 def test_a_leg_is_learned_from_once():

@@ -9,13 +9,13 @@ import pytest
 
 import mala_drake.control.sensitivities.target_sensitivity as mut
 from mala_drake.control import MakeSolver, OptimalControlProblem
-from mala_drake.control.action_parameters import EMPTY_HANDED
+from mala_drake.control.action_parameters import learned_style
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
-from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics
+from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
 from mala_drake.ward.ward_map import Ward
@@ -38,20 +38,28 @@ def problem():
     return OptimalControlProblem()
 
 
-def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT):
+def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT, **how):
     own = mut.TargetSensitivity(LegSimulator(*tools(problem, rules)))
-    return own(DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, dynamics=learned))
+    return own(DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, dynamics=learned, **how))
 
 
 # A robot that skids, answers less and turns wide.
 LEARNED = LearnedDynamics((3.0, 0.2, 0.3, 0.8, 0.9, 0.7), (0.01,) * 6, 100)
 
 
-@pytest.mark.parametrize("learned", [NOMINAL_ROBOT, LEARNED], ids=["nominal", "learned"])
-def test_it_is_that_of_differences_of_the_closed_loop(problem, learned):
+LOOSE = LearnedWeights((("there", (0.25, 1.0, 4.0, 2.0)),))  # In position, and in no hurry.
+
+
+@pytest.mark.parametrize(
+    ("learned", "weights"),
+    [(NOMINAL_ROBOT, LearnedWeights()), (LEARNED, LearnedWeights()), (NOMINAL_ROBOT, LOOSE)],
+    ids=["nominal", "learned dynamics", "learned weights"],
+)
+def test_it_is_that_of_differences_of_the_closed_loop(problem, learned, weights):
+    style = learned_style(GO, weights, carrying=False)
     dynamics = DynamicsParameters(*learned.coefficients) if learned.updates else None
     recorder = LegRecorder(*tools(problem))
-    leg = recorder.record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS, dynamics=dynamics)
+    leg = recorder.record(np.zeros(6), THERE, HALL.shapes, style=style, weights=WEIGHTS, dynamics=dynamics)
     np.testing.assert_array_equal(leg.steps[0].dynamics.vector, (dynamics or DynamicsParameters()).vector)
     analysis = SensitivityAnalysis(problem)
     loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))
@@ -62,7 +70,7 @@ def test_it_is_that_of_differences_of_the_closed_loop(problem, learned):
         return loop.run(leg.initial_state, schedule, model, len(leg.steps)).states[-1, :2]
 
     expected = np.stack([(end(knob, size) - end(knob, -size)) / (2 * size) for knob in range(2)], axis=1)
-    np.testing.assert_allclose(sensitivity(problem, learned=learned), expected, atol=1e-4)
+    np.testing.assert_allclose(sensitivity(problem, learned=learned, weights=weights), expected, atol=1e-4)
 
 
 def breaking(monkeypatch, at):
