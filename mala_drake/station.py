@@ -277,6 +277,7 @@ class _StationBuilder:
             "patient",
             Patient(
                 profile_weights=scenario.true_weights,
+                profile=scenario.profile_name,
                 noise=scenario.patient.noise,
                 clip=scenario.patient.clip,
                 missing=scenario.patient.missing,

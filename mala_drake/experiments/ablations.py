@@ -17,7 +17,7 @@ _GRADIENT = "projected_gradient"
 
 ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
     {
-        "full": ({}, "the scenario as it is"),
+        "full": ({}, "the scenario as it is; ratings with the paper's noise of 0.1"),
         # Other learners.
         _GRADIENT: ({"learner": {"name": _GRADIENT}}, "the paper's learner"),
         "reference_gradient": (
@@ -31,7 +31,7 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         "no_exploration": ({"learner": {"exploration_until": 1.0}}, "plans with its best estimate always"),
         "no_exploration_decay": (
             {"learner": {"name": _GRADIENT, "exploration_decay": 0.0}},
-            "the paper's learner, whose exploration never falls",
+            "projected_gradient, whose exploration never falls",
         ),
         "crisp_grounding": (
             {"grounding": {"membership": "crisp"}},
@@ -45,7 +45,6 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         "meal_only": ({"task": "meal"}, "every episode is a meal"),
         # Things that are harder.
         "rating_noise_0.05": ({"patient": {"noise": 0.05}}, "ratings with half the noise"),
-        "rating_noise_0.1": ({"patient": {"noise": 0.1}}, "ratings with the paper's noise"),
         "rating_noise_0.2": ({"patient": {"noise": 0.2}}, "ratings with twice the noise"),
         "rating_noise_0.4": ({"patient": {"noise": 0.4}}, "ratings with four times the noise"),
         "clipped_ratings": ({"patient": {"clip": True}}, "ratings are cut to [1, 5]"),
@@ -56,7 +55,7 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         ),
         "dirichlet_initial_weights": (
             {"learner": {"name": _GRADIENT, "random_initial_weights": True}},
-            "the paper's learner, which starts at random weights",
+            "projected_gradient, which starts at random weights",
         ),
         "changing_risk": (
             {"world": {"risk_variation": 0.15}},

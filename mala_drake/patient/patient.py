@@ -28,7 +28,8 @@ class Patient(LeafSystem):
     The ratings carry the sequence number of the episode they are about and its features, so that a learner needs no
     other input. A patient rates what was delivered: of a failed episode every rating is None, and learners skip it.
 
-    A patient may have a change of mind: the first episodes are rated by earlier weights.
+    A patient may have a change of mind: the first episodes are rated by earlier weights. Patients of different profiles
+    do not share their luck: under one seed their ratings err independently.
     """
 
     def __init__(
@@ -40,6 +41,7 @@ class Patient(LeafSystem):
         missing: float = 0.0,
         earlier_weights: Sequence[float] = (),
         earlier_episodes: int = 0,
+        profile: str = "custom",
         seed: int = 0,
         first_episode: int = 0,
     ) -> None:
@@ -52,6 +54,7 @@ class Patient(LeafSystem):
             missing: probability that a criterion is left unrated.
             earlier_weights: the true weights of the first episodes, like `profile_weights`; empty when there are none.
             earlier_episodes: the number of the first episode that is rated by `profile_weights`.
+            profile: what the patient is called; the random numbers are its own.
             seed: of the run.
             first_episode: the number of the episode that has the sequence number 1.
 
@@ -65,7 +68,8 @@ class Patient(LeafSystem):
         self._habits = RatingHabits(noise=noise, clip=clip, missing=missing)
         self._seed = seed
         self._first_episode = first_episode
-        keyed_generator(seed, first_episode, "patient")  # Refuses a bad seed now rather than in the simulation.
+        self._stream = f"patient/{profile}"
+        keyed_generator(seed, first_episode, self._stream)  # Refuses a bad seed now rather than in the simulation.
         self._report = self.DeclareAbstractInputPort("episode_report", Value(EpisodeReport()))
         self._ratings = self.DeclareAbstractState(Value(Ratings()))
         self.DeclareAbstractOutputPort(
@@ -88,6 +92,6 @@ class Patient(LeafSystem):
         if not report.success:
             return Ratings(report.sequence, (None,) * len(CRITERIA), report.features)
         episode = self._first_episode + report.sequence - 1
-        generator = keyed_generator(self._seed, episode, "patient")
+        generator = keyed_generator(self._seed, episode, self._stream)
         weights = self._earlier if episode < self._earlier_episodes else self._weights
         return Ratings(report.sequence, rate(report.features, weights, generator, self._habits), report.features)

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 from pydrake.common.value import Value
 from pydrake.systems.analysis import Simulator
@@ -85,6 +86,17 @@ def test_a_resumed_run_hears_what_the_whole_run_would_have_heard():
 def test_the_seed_decides_the_ratings():
     assert ratings_of([delivered(1)], seed=1) == ratings_of([delivered(1)], seed=1)
     assert ratings_of([delivered(1)], seed=1) != ratings_of([delivered(1)], seed=2)
+
+
+def test_patients_of_one_seed_err_independently():
+    errors = np.array(
+        [
+            np.subtract(ratings.values, [5 - 4 * f * w for f, w in zip(FEATURES, WEIGHTS, strict=True)])
+            for profile in ("speed_oriented", "safety_first")
+            for ratings in ratings_of([delivered(k) for k in range(1, 41)], profile=profile)
+        ]
+    ).reshape(2, -1)
+    assert abs(np.corrcoef(errors)[0, 1]) < 0.2  # 200 pairs: the standard deviation is 0.07.
 
 
 def test_clipping_and_missing_ratings_are_options():
