@@ -30,7 +30,6 @@ CHANGED = {
     "medication_only": {"task": "medication"},
     "meal_only": {"task": "meal"},
     "rating_noise_0.05": {"patient.noise": 0.05},
-    "rating_noise_0.1": {},
     "rating_noise_0.2": {"patient.noise": 0.2},
     "rating_noise_0.4": {"patient.noise": 0.4},
     "clipped_ratings": {"patient.clip": True},
