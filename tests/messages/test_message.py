@@ -8,11 +8,12 @@ from dataclasses import FrozenInstanceError, fields
 import pytest
 from pydrake.common.value import Value
 
-from mala_drake import messages as mut
+from mala_drake import messages
+from mala_drake.messages import message as mut
 
 OWN = [
     kind
-    for kind in vars(mut).values()
+    for kind in vars(messages).values()
     if isinstance(kind, type) and issubclass(kind, mut.Message) and kind is not mut.Message
 ]
 
@@ -42,28 +43,3 @@ def test_equal_contents_are_equal_messages(kind):
 @pytest.mark.parametrize("kind", [kind for kind in OWN if "sequence" in {item.name for item in fields(kind)}])
 def test_the_default_means_nothing_yet(kind):
     assert kind().sequence == 0
-
-
-def test_an_action_reads_as_in_pddl():
-    assert mut.Action(1, mut.ActionKind.MOVE, "go_to", ("robot1", "home")).text == "(go_to robot1 home)"
-    assert mut.Action(1, mut.ActionKind.IN_PLACE, "wait").text == "(wait)"
-
-
-@pytest.mark.parametrize("outcome", mut.Outcome)
-def test_a_report_is_finished_by_every_outcome_but_running(outcome):
-    assert mut.ActionReport(3, outcome).finished == (outcome is not mut.Outcome.RUNNING)
-
-
-def test_a_report_on_nothing_is_not_finished():
-    assert not mut.ActionReport(0, mut.Outcome.SUCCESS).finished
-
-
-def test_an_atom_that_is_not_grounded_has_membership_zero():
-    memberships = mut.Memberships((("at", "robot1", "home"),), (0.7,))
-    assert memberships.value(("at", "robot1", "home")) == 0.7
-    assert memberships.value(("at", "robot1", "stove")) == 0.0
-
-
-def test_preferences_begin_uniform():
-    for weights in (mut.Preferences().planning, mut.Preferences().estimate):
-        assert weights == (0.2,) * 5

@@ -1,0 +1,82 @@
+"""What is learned, and the leg that it is learned from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mala_drake.messages.actions import Action
+from mala_drake.messages.message import Atom, Message
+from mala_drake.messages.observations import Shape
+
+
+@dataclass(frozen=True, slots=True)
+class Preferences(Message):
+    """Preference weights (time, safety, battery, proximity, approach) on the simplex.
+
+    `planning` are the weights to plan with (with exploration), `estimate` the learner's own, `deviation` its standard
+    deviation or None for a point estimate.
+    """
+
+    planning: tuple[float, ...] = (0.2,) * 5
+    estimate: tuple[float, ...] = (0.2,) * 5
+    deviation: tuple[float, ...] | None = None
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedCosts(Message):
+    """The numbers that actions are predicted by, corrected by what actions really cost.
+
+    `values` are ground fluents as in PDDL, and what they are believed to be. `leg_scales` tell how many times the
+    predicted time, risk, charge and discomfort legs take in general. `updates` counts the actions learned from.
+    """
+
+    values: tuple[tuple[Atom, float], ...] = ()
+    leg_scales: tuple[float, ...] = (1.0,) * 4
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedTargets(Message):
+    """Where legs to places really are to end, as (place, x, y), metres; places not named are where the map says."""
+
+    targets: tuple[tuple[str, float, float], ...] = ()
+    updates: int = 0  # In all.
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedDynamics(Message):
+    """The coefficients p^f of the controller's model as learned, and their standard deviations; empty if nothing is.
+
+    Both are in the order of `DynamicsParameters`. `updates` counts the samples learned from.
+    """
+
+    coefficients: tuple[float, ...] = ()
+    deviations: tuple[float, ...] = ()
+    updates: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LearnedWeights(Message):
+    """What costs the controller, as learned; empty if nothing is.
+
+    `factors` are p^g by the place that an action leads to: on the position, yaw and velocity weights and on the control
+    weights. `gains` are those of the translation from preferences to weights, 9 rows of 5, the diagonal of Q first.
+    """
+
+    factors: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    gains: tuple[tuple[float, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class DrivenLeg(Message):
+    """A leg as it was driven: all that is needed to simulate it."""
+
+    action: Action = Action()
+    initial_state: tuple[float, ...] = (0.0,) * 6  # As the controller's model has it.
+    target: tuple[float, float, float] = (0.0, 0.0, 0.0)  # The pose that it was to end in: metres, radians.
+    carrying: bool = False  # Whether the gripper held something.
+    obstacles: tuple[Shape, ...] = ()  # What the sensor saw.
+    preferences: tuple[float, ...] = (0.2,) * 5
+    weights: LearnedWeights = LearnedWeights()
+    dynamics: LearnedDynamics = LearnedDynamics()
