@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
+import re
 from collections.abc import Hashable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from mala_drake.errors import BadInput
 from mala_drake.experiments.executors.abstract_executor import AbstractExecutor, Finished, Function, why
 
-_CONNECTING = 30.0  # Seconds within which the scheduler must answer.
+_ANSWERING = 5.0  # Seconds within which whoever is at the address must say that it is a scheduler.
+_CONNECTING = 30.0  # Seconds that a scheduler has to take a client in.
+
+_SCHEMES = ("tcp", "tls", "ws", "wss")
+_ADDRESS = re.compile(rf"(?:{'|'.join(_SCHEMES)})://(?:\[[0-9a-fA-F:.]+\]|[^\s:/\[\]]+):(\d{{1,5}})")
+_MOST_PORT = 65535
 
 
 class DaskExecutor(AbstractExecutor):
@@ -29,12 +37,18 @@ class DaskExecutor(AbstractExecutor):
             jobs: how many calls at a time at most; None for one a thread of the cluster.
 
         Raises:
-            BadInput: if Dask is not installed or no scheduler answers at the address.
+            BadInput: if the address is none, Dask is not installed, or no scheduler answers at the address.
         """
+        _check_form(address)
         try:
             from distributed import Client, as_completed
         except ImportError:
             raise BadInput("--executor", "dask is not installed", 'pip install "mala_drake[dask]"') from None
+        # A client that cannot connect is slow to give up, and loud.
+        with ThreadPoolExecutor(1) as thread:  # This one may have an event loop already.
+            trouble = thread.submit(asyncio.run, _trouble_at(address)).result()
+        if trouble:
+            raise BadInput("--address", f"{address}: {trouble}", "the address of a Dask scheduler")
         try:
             self._client = Client(address, timeout=_CONNECTING, name="mala_drake", set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
@@ -78,6 +92,36 @@ class DaskExecutor(AbstractExecutor):
     def close(self) -> None:
         """Leaves the cluster; calls that nobody waits for any more are dropped there."""
         self._client.close()
+
+
+def _check_form(address: str) -> None:
+    found = _ADDRESS.fullmatch(address)
+    if found is None or not 0 < int(found[1]) <= _MOST_PORT:
+        schemes = ", ".join(f"{scheme}://" for scheme in _SCHEMES[1:])
+        raise BadInput("--address", repr(address), f"tcp://HOST:PORT, or likewise with {schemes}")
+
+
+async def _trouble_at(address: str) -> str | None:
+    """Why there is no scheduler at the address, in one line; None if there is one."""
+    from distributed.comm import connect
+    from distributed.core import send_recv
+    from distributed.security import Security
+
+    async def identity() -> Any:
+        comm = await connect(address, timeout=_ANSWERING, **Security().get_connection_args("client"))
+        try:
+            return await send_recv(comm, op="identity")
+        finally:
+            comm.abort()
+
+    try:
+        # The time for connecting is not one for what is said then.
+        found = await asyncio.wait_for(identity(), 1.2 * _ANSWERING)
+        return None if found["type"] == "Scheduler" else f"is that of a {found['type']}"
+    except TimeoutError:
+        return f"no scheduler has answered within {_ANSWERING:g} s"
+    except Exception as error:  # Whoever else is there may answer with anything.
+        return why(error)
 
 
 def _call(function: Function, argument: Any) -> tuple[Any, str]:
