@@ -18,6 +18,9 @@ from mala_drake.experiments.run_folder import RunFolder
 class ExperimentWatcher(Protocol):
     """Whoever wants to see an experiment as it goes."""
 
+    def on_nothing_begun(self, folder: Path) -> None:
+        """There is nothing in the folder to go on with, which was asked for: the experiment begins anew."""
+
     def on_start(self, *, runs: int, episodes: int, done: int) -> None:
         """It begins, or goes on: so many runs with so many episodes in all, of which some are done already."""
 

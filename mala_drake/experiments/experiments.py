@@ -30,7 +30,7 @@ class Execution:
 
     Attributes:
         out: folder of the results.
-        resume: whether to go on with what is there.
+        resume: whether to go on with what is there; where there is nothing, the experiment begins anew.
         overwrite: whether to replace what is there.
         executor: where episodes are computed.
         jobs: how many at a time; None for what there is room for.
@@ -72,6 +72,8 @@ def run_experiment(
         make_executor(execution.executor, compute_episode, jobs=execution.jobs, address=execution.address) as executor,
         experiment_folder(execution.out, experiment, resume=execution.resume, overwrite=execution.overwrite),
     ):
+        if execution.resume and begun is None:
+            watcher.on_nothing_begun(execution.out)
         failures = conduct(experiment, execution.out, executor, watcher=watcher)
         summary = summarise_experiment(experiment, execution.out, failures)
         replace_durably(execution.out / SUMMARY_FILE, json.dumps(summary, indent=2, allow_nan=False) + "\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -35,6 +36,12 @@ class ExperimentConsole(ProgressConsole):
             speed_window=_SPEED_WINDOW,
         )
         self._bar = self._progress.add_task("", total=None)
+
+    def on_nothing_begun(self, folder: Path) -> None:
+        """Says that what was meant to go on begins anew: the folder's name may be a slip of the hand."""
+        self._errors.print(
+            f"nothing was begun in {folder}: the experiment begins anew", markup=False, highlight=False, soft_wrap=True
+        )
 
     def on_start(self, *, runs: int, episodes: int, done: int) -> None:
         """Says how much there is to do."""

@@ -18,12 +18,16 @@ from mala_drake.experiments import experiments as mut
 from mala_drake.experiments.ablations import ABLATION_KIND
 from mala_drake.experiments.convergence import CONVERGENCE
 from mala_drake.experiments.experiment_kind import ExperimentOptions
+from mala_drake.reporting.experiment_console import ExperimentConsole
 
 SHORT = "{task: medication, episode_time_limit: 1.0}"
 """Episodes that fail for lack of time: cheap, and as deterministic as any."""
 
 
 class Nobody:
+    def on_nothing_begun(self, folder):
+        pass
+
     def on_start(self, **numbers):
         pass
 
@@ -141,6 +145,17 @@ def test_to_go_on_with_another_experiment_is_refused(alone, kind, changes, words
             watcher=Nobody(),
         )
     assert results(folder / "results") == before
+
+
+def test_to_go_on_where_nothing_was_begun_is_told_and_begins(tmp_path, capsys):
+    (tmp_path / "short.yaml").write_text(SHORT)
+    options = ExperimentOptions(scenario=tmp_path / "short.yaml", profiles=("safety_first",), seeds=(0,), episodes=1)
+    execution = mut.Execution(out=tmp_path / "results", resume=True, executor="serial")
+    for told in (True, False):  # The second time there is something.
+        with ExperimentConsole(quiet=False) as console:
+            mut.run_experiment(CONVERGENCE, options, execution, watcher=console)
+        line = f"nothing was begun in {tmp_path / 'results'}: the experiment begins anew"
+        assert (line in capsys.readouterr().err.splitlines()) == told
 
 
 def test_ablations_have_a_page_of_their_own(tmp_path):
