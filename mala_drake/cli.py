@@ -203,10 +203,18 @@ def experiment(
         Path | None, typer.Argument(help="Scenario file that the runs are based on; the usual scenario if left out.")
     ] = None,
     profiles: Annotated[
-        str | None, typer.Option(help="Patient profiles, separated by commas; all five if left out.")
+        str | None,
+        typer.Option(
+            help="Patient profiles, separated by commas; left out: 5 for convergence, 2 for ablations, 1 for targets."
+        ),
     ] = None,
     seeds: Annotated[str | None, typer.Option(help="Random seeds, for example 0,1,7 or 0-4, which is usual.")] = None,
-    episodes: Annotated[int | None, typer.Option(help="Number of episodes of each run.")] = None,
+    episodes: Annotated[
+        int | None,
+        typer.Option(
+            help="Number of episodes of each run; left out: 40 for convergence, 20 for ablations, 6 for targets."
+        ),
+    ] = None,
     learners: Annotated[
         str | None,
         typer.Option(help="Of convergence: preference learners, separated by commas; the first is the main one."),
@@ -215,11 +223,15 @@ def experiment(
         str | None,
         typer.Option(help="Of ablations and targets: conditions, separated by commas; all of them if left out."),
     ] = None,
-    full: Annotated[bool, typer.Option("--full", help="Of ablations: all patients, and twice the episodes.")] = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="Of ablations: all 5 patients, and 40 episodes of each run.")
+    ] = False,
     task: Annotated[str | None, typer.Option(help="medication, meal or alternate, which is usual.")] = None,
     solver: Annotated[str | None, typer.Option(help="MPC solver: snopt, ipopt or rti.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder of the results; results/NAME if left out.")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with what was begun in the folder.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what was begun in the folder, or begin there.")
+    ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what was begun in the folder.")] = False,
     jobs: Annotated[
         int | None, typer.Option(help="Episodes at a time; as many as there are cores if left out.")

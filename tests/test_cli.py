@@ -83,6 +83,23 @@ def test_each_command_explains_itself(capfd, command):
     assert command in output
 
 
+def test_help_tells_the_usual_sizes_of_experiments(capfd):
+    from mala_drake.experiments.experiments import EXPERIMENTS
+
+    _, output, _ = call(capfd, "experiment", "--help")
+    text = " ".join(output.replace("│", " ").split())
+    kinds = EXPERIMENTS.values()
+    for counts in (
+        [f"{len(kind.size.profiles)} for {kind.name}" for kind in kinds],
+        [f"{kind.size.episodes} for {kind.name}" for kind in kinds],
+    ):
+        assert f"left out: {', '.join(counts)}." in text
+    assert {kind.size.seeds for kind in kinds} == {tuple(range(5))}
+    assert "0-4, which is usual" in text
+    full = EXPERIMENTS["ablations"].full_size
+    assert f"all {len(full.profiles)} patients, and {full.episodes} episodes" in text
+
+
 def test_help_does_not_import_drake(tmp_path):
     code = (
         "import sys; from mala_drake.cli import main\n"
