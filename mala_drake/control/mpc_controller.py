@@ -35,7 +35,7 @@ from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
 from .parameters import DynamicsParameters, StageParameters, TerminalParameters, learned_parameters
 from .reference import make_reference
-from .solution import Solution, Status
+from .solution import Solution
 from .solver import Solver
 from .weights_to_costs import DEFAULT_TRANSLATION, CostTranslation, learned_translation
 
@@ -84,7 +84,8 @@ class MpcController(LeafSystem):
     A new action (a higher sequence number) replaces the one under way; one that is not a movement parks the robot.
     A leg ends where `learned_targets` says at its beginning, if that is connected and says so, else where the map does.
     Whatever goes wrong - no free way, failed solves, a state that is not finite, an empty battery - the robot brakes
-    and the report says what happened.
+    and the report says what happened. A solve that has stopped at its iteration limit, as every one may that is a
+    real-time iteration, is no failure: the robot drives on with its controls.
 
     The model it predicts with, p^f, is what `learned_dynamics` says; where that says nothing or is not connected, it is
     the nominal one. What costs it, p^g and the translation of the preferences, is what `learned_weights` says when a
@@ -234,14 +235,14 @@ class MpcController(LeafSystem):
         started = time.perf_counter()
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)
         self.solve_seconds.append(time.perf_counter() - started)
-        usable = solution.success or _is_usable(solution)
+        usable = solution.usable
         stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage) if usable else 0.0
-        # A solve that stopped early counts as failed, also where its controls are good enough to drive with.
         report = replace(
             driving.report,
             steps=leg.steps,
             solves=driving.report.solves + 1,
-            failures=driving.report.failures + (not solution.success),
+            failures=driving.report.failures + (not usable),
+            not_converged=driving.report.not_converged + (usable and not solution.success),
             closed_loop_cost=driving.report.closed_loop_cost + stage_cost,
         )
         if not usable:
@@ -297,11 +298,6 @@ class MpcController(LeafSystem):
             detail=detail,
         )
         return replace(driving, report=report, control=PARKED, warm_start=None, predicted=PredictedTrajectory())
-
-
-def _is_usable(solution: Solution) -> bool:
-    """Whether an early-stopped solve still gives admissible controls: better driven than braked."""
-    return solution.status is Status.ITERATION_LIMIT and bool(np.isfinite(solution.controls).all())
 
 
 def _stage_cost(state: NDArray[np.float64], control: NDArray[np.float64], stage: StageParameters) -> float:

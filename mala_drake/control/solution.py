@@ -51,6 +51,12 @@ class Solution(Message):
         """Whether the controls are a local optimum to working accuracy."""
         return self.status in (Status.SOLVED, Status.INACCURATE)
 
+    @property
+    def usable(self) -> bool:
+        """Whether the robot can be driven with the controls: admissible, if perhaps stopped before the optimum."""
+        stopped = self.status is Status.ITERATION_LIMIT
+        return self.success or (stopped and bool(np.isfinite(self.controls).all()))
+
     def shifted(self) -> Vector:
         """The warm start for the next sample, shape (N, 3): paper, eq. (Shift), (ShiftEnd).
 

@@ -11,13 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from mala_drake.control import MakeSolver, OptimalControlProblem, Status
+from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.rti import RealTimeIterationSolver
 
 from .model_drive import Drive, DriveRun, run_drive, run_drive_in_phases
 from .model_drives import course, hard_legs
-
-_NOT_DRIVEN_WITH = (Status.NUMERICAL, Status.INVALID_INPUT)
 
 
 def bench_mpc() -> list[dict[str, Any]]:
@@ -82,6 +80,6 @@ def _summary(runs: Sequence[DriveRun]) -> dict[str, Any]:
         "cost": round(float(sum(run.cost for run in runs)), 2),
         "min_clearance_m": round(min(run.min_clearance for run in runs), 3),
         "position_error_m": round(max(run.position_error for run in runs), 3),
-        "not_converged": sum(solution.status is Status.ITERATION_LIMIT for solution in solutions),
-        "failures": sum(solution.status in _NOT_DRIVEN_WITH for solution in solutions),
+        "not_converged": sum(solution.usable and not solution.success for solution in solutions),
+        "failures": sum(not solution.usable for solution in solutions),
     }

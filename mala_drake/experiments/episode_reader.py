@@ -56,7 +56,7 @@ def _restored(value: Any, kind: str, *, where: str) -> Any:
     """The value as the record has it: what was written as null because it was not finite is NaN again."""
     if kind == "float" and value is None:
         return math.nan
-    expected = _PLAIN.get(kind)
+    expected = _PLAIN.get(kind if value is None else kind.removesuffix(" | None"))
     if expected is not None and (not isinstance(value, expected) or (isinstance(value, bool) and kind != "bool")):
         raise BadInput(where, repr(value), f"a value of type {kind}")
     if kind == "dict[str, float]" and isinstance(value, dict):

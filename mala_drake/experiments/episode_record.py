@@ -18,13 +18,23 @@ from mala_drake.preferences import CRITERIA
 EPISODES_FILE = "episodes.jsonl"
 _DIGITS = 9  # Of floating-point numbers in results: more than any of them means.
 
-
 _NOT_WRITTEN = ("leg_outcomes",)  # For who watches a run; in the file, `failure` says why an episode failed.
+_NOT_WRITTEN_IF_NONE = (
+    "mpc_not_converged",
+    "learned_dynamics",
+    "learned_weights",
+    "learned_translation",
+    "executed_actions",
+)
 
 
 @dataclass
 class EpisodeRecord:
     """One episode as it was executed on the physics; the fields are those of the file, in their order.
+
+    `mpc_failures` counts the solves that the robot was not driven with, `mpc_not_converged` those that had stopped at
+    the iteration limit and that it was driven with; it is None in what earlier versions have written, where they are
+    among the failures.
 
     `learned_dynamics` has each learned coefficient of the controller's model with its standard deviation, at the end of
     the episode, `learned_weights` the factors of its weights by place (position, yaw, velocity, control), and
@@ -65,6 +75,7 @@ class EpisodeRecord:
     mismatches: int
     battery_start: float
     battery_end: float
+    mpc_not_converged: int | None = None
     learned_dynamics: dict[str, list[float]] | None = None
     learned_weights: dict[str, list[float]] | None = None
     learned_translation: list[list[float]] | None = None
@@ -75,7 +86,7 @@ class EpisodeRecord:
     def to_json(self) -> str:
         """The record as one line of JSON; numbers that are not finite become null."""
         written = {name: value for name, value in vars(self).items() if name not in _NOT_WRITTEN}
-        for name in ("learned_dynamics", "learned_weights", "learned_translation", "executed_actions"):
+        for name in _NOT_WRITTEN_IF_NONE:
             if written[name] is None:
                 del written[name]
         if not self.displaced_legs:

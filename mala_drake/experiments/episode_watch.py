@@ -139,6 +139,7 @@ class EpisodeWatch:
             solver=self._scenario.control.solver,
             mpc_solves=sum(leg.solves for leg in legs),
             mpc_failures=sum(leg.failures for leg in legs),
+            mpc_not_converged=sum(leg.not_converged for leg in legs),
             min_clearance_m=float(safety[0]),
             collisions=int(safety[1]),
             terminal_errors_m=[leg.position_error for leg in self._legs],

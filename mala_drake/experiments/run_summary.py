@@ -57,6 +57,7 @@ def totals_of(records: Sequence[EpisodeRecord]) -> dict[str, Any]:
         "max_terminal_speed_m_s": max((e for r in records for e in r.terminal_speeds_m_s), default=None),
         "mpc_solves": sum(record.mpc_solves for record in records),
         "mpc_failures": sum(record.mpc_failures for record in records),
+        "mpc_not_converged": sum(record.mpc_not_converged or 0 for record in records),
         "simulated_s": sum(record.sim_time_s for record in records),
     }
 

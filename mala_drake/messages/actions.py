@@ -106,7 +106,8 @@ class ActionReport(Message):
     terminal_speed: float = 0.0
     closed_loop_cost: float = 0.0  # R^o = sum of G over the steps so far, and W of the reached state once it has ended.
     solves: int = 0
-    failures: int = 0
+    failures: int = 0  # Solves that the robot was not driven with: it braked instead.
+    not_converged: int = 0  # Solves that stopped at their iteration limit, and that it was driven with.
     detail: str = ""
     shortfall: tuple[float, float] | None = None  # Of the arm: (dx, dy) in the world that is missing, metres.
 

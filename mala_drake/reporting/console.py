@@ -80,7 +80,8 @@ def _figures_table(title: str, totals: dict[str, Any], timing: dict[str, Any], f
     table.add_row(
         "distance to true preferences", f"{figures['final_distance']:.3f} (best {figures['best_distance']:.3f})"
     )
-    table.add_row("MPC solves", f"{totals['mpc_solves']}, {totals['mpc_failures']} failed")
+    stopped = f", {n} stopped early" if (n := totals["mpc_not_converged"]) else ""
+    table.add_row("MPC solves", f"{totals['mpc_solves']}, {totals['mpc_failures']} failed{stopped}")
     table.add_row("median time of a solve", f"{timing['mpc_median_ms']:.1f} ms")
     table.add_row("median time of an episode", f"{timing['median_episode_wall_s']:.1f} s")
     return table

@@ -173,20 +173,31 @@ def test_a_failed_solve_brakes_and_the_next_one_goes_on(problem):
     bench.tick()
     bench.tick()
     assert tuple(bench.output("control")) == mut.PARKED
-    assert bench.output("leg_report").failures == 1
+    report = bench.output("leg_report")
+    assert (report.failures, report.not_converged) == (1, 0)
     bench.tick()
     assert bench.output("control")[0] > 0.1
     assert bench.output("leg_report").outcome is Outcome.RUNNING
 
 
-def test_a_solve_that_stops_early_drives_on_but_counts_as_failed(problem):
+def test_a_solve_that_stops_early_is_driven_with_and_is_no_failure(problem):
     bench = Bench(problem, solver=HurriedSolver(MakeSolver("snopt", problem)))
     bench.send(GO)
     bench.tick()
     report = bench.output("leg_report")
     assert report.outcome is Outcome.RUNNING
-    assert (report.solves, report.failures) == (1, 1)
+    assert (report.solves, report.failures, report.not_converged) == (1, 0, 1)
     assert bench.output("control")[0] > 0.1
+
+
+def test_one_iteration_a_sample_is_driven_with(problem):
+    bench = Bench(problem, solver=MakeSolver("rti", problem, sqp_iterations=1))
+    bench.place([0.0, 0.5, 0.9, 1.0, 0.2, 0.3])
+    bench.send(GO)
+    bench.tick()
+    report = bench.output("leg_report")
+    assert (report.solves, report.failures, report.not_converged) == (1, 0, 1)
+    assert tuple(bench.output("control")) != mut.PARKED
 
 
 def test_a_solver_that_keeps_failing_is_reported(problem):

@@ -1,4 +1,5 @@
 import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,8 +25,22 @@ def test_the_warm_start_moves_each_control_one_stage_up_and_holds_the_last(probl
     np.testing.assert_array_equal(solution.shifted(), [[3, 4, 5], [6, 7, 8], [6, 7, 8]])
 
 
-@pytest.mark.parametrize(("status", "success"), [("solved", True), ("iteration_limit", False), ("numerical", False)])
-def test_only_an_optimum_is_a_success(status, success):
-    solution = mut.invalid_solution(ParameterLayout(3, 1))
-    object.__setattr__(solution, "status", mut.Status(status))
+@pytest.mark.parametrize(
+    ("status", "success", "usable"),
+    [
+        ("solved", True, True),
+        ("inaccurate", True, True),
+        ("iteration_limit", False, True),
+        ("numerical", False, False),
+        ("invalid_input", False, False),
+    ],
+)
+def test_only_an_optimum_is_a_success_and_what_stopped_on_the_way_is_usable(status, success, usable):
+    solution = replace(mut.invalid_solution(ParameterLayout(3, 1)), status=mut.Status(status))
     assert solution.success is success
+    assert solution.usable is usable
+
+
+def test_controls_that_are_not_finite_are_not_usable():
+    broken = replace(mut.invalid_solution(ParameterLayout(3, 1)), status=mut.Status.ITERATION_LIMIT)
+    assert not replace(broken, controls=np.full((3, 3), np.nan)).usable

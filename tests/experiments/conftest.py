@@ -41,6 +41,7 @@ def _episode_record(**changes) -> EpisodeRecord:
         "solver": "snopt",
         "mpc_solves": 10,
         "mpc_failures": 0,
+        "mpc_not_converged": 0,
         "min_clearance_m": 0.2,
         "collisions": 0,
         "terminal_errors_m": [0.01],

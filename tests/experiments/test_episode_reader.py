@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import pytest
@@ -29,6 +30,23 @@ def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode
     assert records[2].executed_actions is None
     assert (records[3].learned_weights, records[3].learned_translation) == tuple(learned.values())
     assert records[4].executed_actions == [entry]
+
+
+def test_a_line_of_an_earlier_version_does_not_tell_solves_that_stopped_early(tmp_path, episode_record):
+    line = json.loads(episode_record(mpc_failures=3).to_json())
+    del line["mpc_not_converged"]
+    (tmp_path / "file").write_text(json.dumps(line) + "\n")
+    ((record,), _) = mut.read_episodes(tmp_path / "file")
+    assert (record.mpc_failures, record.mpc_not_converged) == (3, None)
+    assert json.loads(record.to_json()) == line
+
+
+@pytest.mark.parametrize("wrong", ["many", 1.5, True])
+def test_a_number_that_may_be_missing_is_a_number_where_it_is_not(tmp_path, episode_record, wrong):
+    line = json.loads(episode_record().to_json())
+    (tmp_path / "file").write_text(json.dumps({**line, "mpc_not_converged": wrong}) + "\n")
+    with pytest.raises(BadInput, match=r"mpc_not_converged: .* a value of type int"):
+        mut.read_episodes(tmp_path / "file")
 
 
 def test_a_torn_last_line_is_left_out_and_told(tmp_path, episode_record):

@@ -34,6 +34,7 @@ KEYS = [
     "solver",
     "mpc_solves",
     "mpc_failures",
+    "mpc_not_converged",
     "min_clearance_m",
     "collisions",
     "terminal_errors_m",

@@ -12,7 +12,7 @@ from mala_drake.experiments import run as mut
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.patient.profiles import PROFILES
-from mala_drake.scenario import Scenario
+from mala_drake.scenario import ControlConfig, Scenario
 
 WEIGHTS = PROFILES["speed_oriented"]
 
@@ -50,6 +50,7 @@ def test_medicine_and_supplement_are_delivered_and_the_robot_learns(delivery):
     assert record.failure is None
     assert record.actions[-1].startswith("(deliver_on_bedside_table_")
     assert record.collisions == summary["totals"]["collisions"] == 0
+    assert record.mpc_failures == record.mpc_not_converged == 0 < record.mpc_solves
     assert record.min_clearance_m >= 0.05
     assert max(record.terminal_errors_m) <= 0.15
     assert max(record.terminal_yaw_errors_rad) <= 0.2
@@ -134,6 +135,12 @@ def test_without_a_folder_nothing_is_written(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_real_time_iterations_are_driven_with_and_are_no_failures():
+    scenario = short(episode_time_limit=4.0, control=ControlConfig(sqp_iterations=1))
+    totals = mut.run_scenario(scenario, mut.RunOptions(out=None))["totals"]
+    assert totals["mpc_failures"] == 0 < totals["mpc_not_converged"] <= totals["mpc_solves"]
+
+
 def test_a_recording_explains_the_run(tmp_path):
     options = mut.RunOptions(out=tmp_path / "results", html=tmp_path / "new" / "recording.html")
     mut.run_scenario(short(), options)
@@ -179,6 +186,14 @@ def test_only_plans_that_delivered_count_as_variants():
     summary = mut.summarise(Scenario(), records)
     assert summary["profiles"]["speed_oriented"]["plan_variants"] == ["a", "b"]
     assert summary["totals"]["failures"] == ["blocked"]
+
+
+def test_solves_that_stopped_early_are_added_up_where_they_are_told():
+    records = [episode(0.3), episode(0.3), episode(0.3)]
+    for record, failures, stopped in zip(records, (0, 1, 2), (5, 7, None), strict=True):
+        record.mpc_failures, record.mpc_not_converged = failures, stopped
+    totals = mut.summarise(Scenario(), records)["totals"]
+    assert (totals["mpc_failures"], totals["mpc_not_converged"]) == (3, 12)
 
 
 def test_a_summary_is_json_even_where_nothing_was_near():

@@ -114,6 +114,7 @@ def _episode(learner, state, *, episode, task, profile, seed, rating_noise):
         solver="snopt",
         mpc_solves=250,
         mpc_failures=0,
+        mpc_not_converged=0,
         min_clearance_m=0.22,
         collisions=0,
         terminal_errors_m=[0.016, 0.014, 0.011],

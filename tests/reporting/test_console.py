@@ -94,6 +94,13 @@ def test_a_clearance_that_nothing_limits_is_a_dash(capsys):
     assert "inf" not in output + errors.replace("info", "")
 
 
+def test_solves_that_stopped_early_are_told_apart_from_failures(capsys):
+    output, _ = show(dataclasses.replace(episode(), mpc_solves=255, mpc_not_converged=83), capsys)
+    assert "255, 0 failed, 83 stopped early" in " ".join(output.split())
+    output, _ = show(episode(), capsys)
+    assert "stopped early" not in output
+
+
 def test_quiet_means_nothing_at_all(capsys):
     assert show(episode(), capsys, quiet=True) == ("", "")
 

@@ -113,6 +113,7 @@ def test_the_worst_of_all_episodes_is_told(tmp_path, simulate_results):
                 terminal_yaw_errors_rad=[-0.2],
                 terminal_speeds_m_s=[],
                 mpc_failures=2,
+                mpc_not_converged=5,
                 mismatches=1,
                 sim_time_s=1800.0,
             )
@@ -120,4 +121,13 @@ def test_the_worst_of_all_episodes_is_told(tmp_path, simulate_results):
 
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2, change=drive)
     ((row,),) = [group.rows for group in mut.execution_table(load_results(tmp_path)).groups]
-    assert row == ("main", "2", "0.100", "0.300", "0.200", "0.040", "500", "2", "1", "1.0")
+    assert row == ("main", "2", "0.100", "0.300", "0.200", "0.040", "500", "2", "5", "1", "1.0")
+
+
+def test_what_earlier_versions_counted_among_failures_is_left_open(tmp_path, simulate_results):
+    def forget(record):
+        return replace(record, mpc_not_converged=None)
+
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2, change=forget)
+    table = mut.execution_table(load_results(tmp_path))
+    assert table.groups[0].rows[0][table.headings.index("stopped early")] == mut.NONE
