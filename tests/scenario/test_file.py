@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+import re
+from pathlib import Path
+
+import mala_drake
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.resources import models_folder
 from mala_drake.scenario import Scenario
@@ -12,6 +17,12 @@ def test_the_default_scenario_is_a_round_of_medicine_and_a_meal():
     scenario = mut.LoadScenario()
     assert (scenario.task, scenario.episodes, scenario.random_seed) == ("alternate", 2, 0)
     assert scenario.true_weights == PROFILES["speed_oriented"]
+
+
+def test_the_default_scenario_says_where_its_fields_are_explained():
+    file = models_folder() / "default.scenario.yaml"
+    (named,) = re.findall(r"mala_drake/(\S+\.py)", file.read_text(encoding="utf-8"))
+    assert Path(mala_drake.__file__).parent / named == Path(inspect.getfile(Scenario))
 
 
 def test_an_empty_file_is_the_default_scenario(load_scenario):
