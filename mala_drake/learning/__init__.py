@@ -1,5 +1,6 @@
 """The learners: each a plain class on vectors, with a system beside it that puts it in the diagram."""
 
+from mala_drake.learning.abstract_learner import AbstractLearner
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner
 from mala_drake.learning.bandit import Bandit
 from mala_drake.learning.convergence import CONVERGED_DISTANCE, convergence_episode, preference_distance
@@ -17,10 +18,14 @@ from mala_drake.learning.random_weights import RandomWeights
 from mala_drake.learning.simplex import project_onto_simplex
 from mala_drake.learning.target_estimator import TargetEstimator, TargetEvidence
 from mala_drake.learning.target_learner import TargetLearner
+from mala_drake.learning.translation_estimator import TranslationEstimator
+from mala_drake.learning.weight_estimator import WeightEstimator
+from mala_drake.learning.weight_learner import WeightLearner
 
 __all__ = [
     "CONVERGED_DISTANCE",
     "LEARNER_NAMES",
+    "AbstractLearner",
     "AbstractPreferenceLearner",
     "Bandit",
     "CostEstimator",
@@ -36,6 +41,9 @@ __all__ = [
     "TargetEvidence",
     "TargetLearner",
     "Transition",
+    "TranslationEstimator",
+    "WeightEstimator",
+    "WeightLearner",
     "convergence_episode",
     "efficiency",
     "make_learner",
