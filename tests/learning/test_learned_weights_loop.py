@@ -16,7 +16,7 @@ from mala_drake.scenario import Scenario
 from mala_drake.station import MakeCareStation
 
 
-def run(episodes, **control):
+def scenario_of(episodes, **control):
     scenario = Scenario(episodes=episodes)
     scenario.planner.learned_costs = False
     # The same way in every episode.
@@ -24,6 +24,11 @@ def run(episodes, **control):
     scenario.learner.name, scenario.learner.initial_weights = "fixed", [0.1, 0.1, 0.6, 0.1, 0.1]
     for name, value in control.items():
         setattr(scenario.control, name, value)
+    return scenario
+
+
+def run(episodes, **control):
+    scenario = scenario_of(episodes, **control)
     station, carried, records = MakeCareStation(scenario), Carried(), []
     for episode in range(episodes):
         record, carried = simulate_episode(station, scenario, episode=episode, carried=carried)
@@ -62,3 +67,20 @@ def test_the_translation_moves_a_little_with_each_leg_and_is_recorded():
     assert 0.0 < np.linalg.norm(first) < np.linalg.norm(second) < 0.6
     assert mismatch(records[1]) < mismatch(records[0])
     assert records[0].learned_weights is None
+
+
+def test_a_resumed_run_goes_on_bit_for_bit():
+    scenario = scenario_of(2, learned_weights=True, learned_translation=True)
+    station = MakeCareStation(scenario)
+    first, carried = simulate_episode(station, scenario, episode=0, carried=Carried())
+    assert len(first.learned_weights) == 3
+    start = TranslationEstimator().translation(TranslationEstimator().initial_state()).gains
+    assert np.linalg.norm(np.array(first.learned_translation) - start) > 0.0
+    resumed = Carried.from_json(carried.to_json(), where="checkpoint")
+    records = []
+    for diagram, before in ((station, carried), (MakeCareStation(scenario), resumed)):
+        record, after = simulate_episode(diagram, scenario, episode=1, carried=before)
+        record.timing.clear()
+        records.append((record.to_json(), after))
+    assert records[0] == records[1]
+    assert records[0][1].learners["weight_learner"] != carried.learners["weight_learner"]

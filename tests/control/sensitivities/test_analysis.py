@@ -17,14 +17,25 @@ def analysis(small):
     return mut.SensitivityAnalysis(small)
 
 
-def test_the_solver_does_not_matter(small, analysis, start, choose):
-    chosen = choose()
-    jacobians = []
-    for name in SOLVER_NAMES:
-        point = analysis.polish(MakeSolver(name, small).solve(start, chosen), start, chosen)
-        jacobians.append(analysis.policy(point).jacobian)
-    for other in jacobians[1:]:
-        np.testing.assert_allclose(other, jacobians[0], atol=1e-6 * np.abs(jacobians[0]).max())
+@pytest.fixture(scope="module")
+def reference_point(analysis, solve, start, choose):
+    return solve(start, choose())
+
+
+@pytest.mark.parametrize("name", SOLVER_NAMES)
+def test_the_solver_does_not_matter(small, analysis, start, choose, reference_point, name):
+    solution = MakeSolver(name, small).solve(start, choose())
+    assert solution.success
+    point = analysis.polish(solution, start, choose())
+    policy, expected = analysis.policy(point), analysis.policy(reference_point)
+    assert policy.regularity.differentiable
+    np.testing.assert_allclose(policy.jacobian, expected.jacobian, atol=1e-6 * np.abs(expected.jacobian).max())
+    whole, _ = analysis.primal_dual(point)
+    expected, _ = analysis.primal_dual(reference_point)
+    for item in fields(whole):
+        ours, theirs = getattr(whole, item.name), getattr(expected, item.name)
+        assert np.isfinite(ours).all()
+        np.testing.assert_allclose(ours, theirs, atol=1e-6 * np.abs(theirs).max(), err_msg=item.name)
 
 
 def test_a_derivative_that_does_not_exist_is_not_a_number(small, analysis, start, choose):
