@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -178,7 +177,7 @@ class TargetLearner(LegLearner):
         if outcome is Outcome.SUCCESS:
             if self._learner.is_settled(state, mismatch.place, mismatch.error, offset):
                 return None
-            sensitivity = self._sensitivity_of(context, leg)
+            sensitivity = self._sensitivity_of(leg)
             return TargetEvidence((_missing(mismatch, sensitivity),), offset, sensitivity, leg.target[:2])
         if outcome not in _NOT_THERE or (offset is None and self._clearance(context)(leg.target[:2]) >= GOAL_DISTANCE):
             return None
@@ -190,17 +189,15 @@ class TargetLearner(LegLearner):
         reach: PlaceMismatch = self._reach_mismatch.Eval(context)
         if reach.error == 0.0 or reach.place not in self._learner.places or reach.place != leg.action.place:
             return None
-        sensitivity = self._sensitivity_of(context, leg)
+        sensitivity = self._sensitivity_of(leg)
         missing = [_missing(reach, sensitivity, _REACH_MARGIN)]
         place: PlaceMismatch = self._place_mismatch.Eval(context)
         if place.place == reach.place:  # The robot still stands where the leg has ended.
             missing.append(_missing(place, sensitivity))
         return TargetEvidence(tuple(missing), None, sensitivity, leg.target[:2])
 
-    def _sensitivity_of(self, context: Context, leg: DrivenLeg) -> FloatArray:
+    def _sensitivity_of(self, leg: DrivenLeg) -> FloatArray:
         """D (x, y at the end) / d (x, y of the target) of the newest leg."""
-        # The gripper is that of now, which after an action in place may hold more than on the way.
-        leg = replace(leg, carrying=bool(self._magnet.Eval(context).held))
         found: FloatArray | None
         try:
             found = self._sensitivity(leg)
