@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import gc
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.experiments.stations import Stations
+from mala_drake.fingerprint import fingerprint
 from mala_drake.scenario import Scenario
 
 
 @dataclass(frozen=True)
 class EpisodeWork:
-    """Everything that an episode depends on."""
+    """Everything that an episode depends on; `code` is the fingerprint of what is to compute it."""
 
     scenario: Scenario
     episode: int
     carried: Carried
+    code: str = field(default_factory=fingerprint)
 
 
 _one_at_a_time = threading.Lock()
@@ -29,7 +31,13 @@ def compute_episode(work: EpisodeWork) -> tuple[str, Carried]:
 
     The newest run's stations are kept, because the next episode is likely to be of the same run, and to build one takes
     a second. A process computes one episode at a time: its threads could not go on side by side anyway.
+
+    Raises:
+        RuntimeError: this process has other code than the one that asks for the episode, for it is on another machine,
+            or files were changed meanwhile.
     """
+    if work.code != fingerprint():
+        raise RuntimeError(f"other code or models here (fingerprint {fingerprint()}) than it was begun with")
     with _one_at_a_time:
         station = _stations(work.scenario).of_episode(work.episode)
         record, carried = simulate_episode(station, work.scenario, episode=work.episode, carried=work.carried)

@@ -11,6 +11,7 @@ from typing import Any
 import mala_drake
 from mala_drake.configuration import typed
 from mala_drake.errors import BadInput
+from mala_drake.fingerprint import fingerprint
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.scenario import Scenario, Validate
 
@@ -98,6 +99,7 @@ class Experiment:
         """Everything that decides what the runs come to."""
         return {
             "version": mala_drake.__version__,
+            "fingerprint": fingerprint(),
             "experiment": self.name,
             "scenario": asdict(self.base),
             "conditions": copy.deepcopy(dict(self.conditions)),

@@ -11,10 +11,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import mala_drake
 from mala_drake.errors import BadInput
 from mala_drake.experiments.durable_files import TEMPORARY, replace_durably
 from mala_drake.experiments.experiment import Experiment
 from mala_drake.experiments.run_summary import SUMMARY_FILE
+from mala_drake.fingerprint import fingerprint
 
 EXPERIMENT_FILE = "experiment.json"
 """Says what was begun in a folder."""
@@ -23,20 +25,37 @@ _LOCK_FILE = ".lock"
 _OWN_FILES = (_LOCK_FILE, EXPERIMENT_FILE + TEMPORARY)
 
 
-def begun_in(folder: Path) -> Experiment | None:
+def begun_in(folder: Path, *, resume: bool = False) -> Experiment | None:
     """The experiment that was begun in a folder, or None.
 
+    Args:
+        folder: of the experiment.
+        resume: whether it is to be gone on with.
+
     Raises:
-        BadInput: when its file cannot be read, or was written by another version of this package.
+        BadInput: when its file cannot be read, or it is to be gone on with and was begun by other code, or with other
+            models or domains, than are here now.
     """
     path = folder / EXPERIMENT_FILE
     if not path.exists():
         return None
     data = _read(path)
-    experiment = Experiment.from_json(data, where=str(path))
-    if data["version"] != experiment.to_json()["version"]:
-        raise BadInput(str(path), f"begun with version {data['version']}", experiment.to_json()["version"])
-    return experiment
+    if resume and isinstance(data, dict):
+        _refuse_other_code(data, path)
+    return Experiment.from_json(data, where=str(path))
+
+
+def _refuse_other_code(data: dict[str, Any], path: Path) -> None:
+    """Results of two states of the code are not those of one experiment.
+
+    Whoever wrote no fingerprint is from before there were any: other code, too.
+    """
+    begun, now = data.get("fingerprint"), fingerprint()
+    if begun == now:
+        return
+    what = f"begun with other code or models (fingerprint {begun or 'not kept yet'}, version {data.get('version')})"
+    expected = f"the installation it was begun with rather than {now}, version {mala_drake.__version__}"
+    raise BadInput(str(path), what, f"{expected}; --overwrite begins anew")
 
 
 def _read(path: Path) -> Any:
@@ -62,10 +81,10 @@ def experiment_folder(
 
     Raises:
         BadInput: when the folder is not empty and neither option allows for it, when it holds something else than this
-            experiment, or when another process writes there.
+            experiment by this code, or when another process writes there.
     """
     with _held(folder):
-        begun = begun_in(folder)
+        begun = begun_in(folder, resume=resume)
         if begun is None or overwrite:
             _make_room(folder, begun, resume=resume)
             replace_durably(folder / EXPERIMENT_FILE, json.dumps(experiment.to_json(), indent=2) + "\n")

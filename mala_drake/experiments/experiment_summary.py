@@ -15,6 +15,7 @@ from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord, 
 from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_summary import timing_of, totals_of
 from mala_drake.experiments.target_summary import target_figures
+from mala_drake.fingerprint import fingerprint
 from mala_drake.learning.information_bound import efficiency
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.bound_results import bounds_of
@@ -44,6 +45,7 @@ def summarise_experiment(experiment: Experiment, folder: Path, failures: Mapping
     summary: dict[str, Any] = plain(
         {
             "version": mala_drake.__version__,
+            "fingerprint": fingerprint(),
             "experiment": experiment.name,
             "scenario": asdict(scenario) | {"patient": asdict(experiment.base.patient)},
             "seed": list(experiment.seeds),

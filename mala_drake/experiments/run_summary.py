@@ -10,6 +10,7 @@ import numpy as np
 
 import mala_drake
 from mala_drake.experiments.episode_record import EpisodeRecord, plain
+from mala_drake.fingerprint import fingerprint
 from mala_drake.learning.convergence import convergence_episode
 from mala_drake.scenario import Scenario
 
@@ -34,6 +35,7 @@ def summarise(scenario: Scenario, records: Sequence[EpisodeRecord]) -> dict[str,
     summary: dict[str, Any] = plain(
         {
             "version": mala_drake.__version__,
+            "fingerprint": fingerprint(),
             "scenario": asdict(scenario),
             "seed": scenario.random_seed,
             "totals": totals_of(records),

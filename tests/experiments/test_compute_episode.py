@@ -56,3 +56,9 @@ def test_an_episode_is_the_same_in_another_process_that_has_just_computed_someth
     line, carried = mut.compute_episode(elsewhere)
     assert without_timing(line) == without_timing(done[2][0])
     assert carried == done[2][1]
+
+
+def test_other_code_than_it_was_begun_with_does_not_compute_it():
+    work = mut.EpisodeWork(scenario(), 0, Carried(), code="0123456789abcdef")
+    with pytest.raises(RuntimeError, match="other code or models here"):
+        mut.compute_episode(work)

@@ -102,12 +102,39 @@ def test_to_go_on_with_something_else_is_refused_by_the_first_difference(tmp_pat
     assert files(tmp_path) == before
 
 
-def test_what_another_version_began_is_not_gone_on_with(tmp_path):
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"fingerprint": "0123456789abcdef"},
+            r"other code or models \(fingerprint 0123456789abcdef, version 0\.0\.1\)",
+        ),
+        ({"fingerprint": None}, r"other code or models \(fingerprint not kept yet, version 0\.0\.1\)"),
+    ],
+)
+def test_what_other_code_began_is_not_gone_on_with(tmp_path, changes, words):
+    begin(tmp_path)
+    leave_results(tmp_path)
+    told = {**json.loads((tmp_path / "experiment.json").read_text()), "version": "0.0.1", **changes}
+    written = {key: value for key, value in told.items() if value is not None}
+    (tmp_path / "experiment.json").write_text(json.dumps(written))
+    before = files(tmp_path)
+    for resume in (lambda: mut.begun_in(tmp_path, resume=True), lambda: begin(tmp_path, resume=True)):
+        with pytest.raises(BadInput, match=words) as caught:
+            resume()
+        assert "--overwrite begins anew" in str(caught.value)
+        assert "\n" not in str(caught.value)
+    assert files(tmp_path) == before
+    assert mut.begun_in(tmp_path) == EXPERIMENT  # It can still be read,
+    begin(tmp_path, overwrite=True)  # and replaced.
+    assert mut.begun_in(tmp_path, resume=True) == EXPERIMENT
+
+
+def test_the_same_code_goes_on_whatever_its_version_is_called(tmp_path):
     begin(tmp_path)
     told = json.loads((tmp_path / "experiment.json").read_text())
-    (tmp_path / "experiment.json").write_text(json.dumps({**told, "version": "0.0.1"}))
-    with pytest.raises(BadInput, match=r"version 0\.0\.1"):
-        mut.begun_in(tmp_path)
+    (tmp_path / "experiment.json").write_text(json.dumps({**told, "version": "0+unknown"}))
+    begin(tmp_path, resume=True)
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}"])

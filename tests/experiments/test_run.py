@@ -73,7 +73,7 @@ def test_files_hold_what_the_run_returned_and_told(delivery):
     lines = (folder / "episodes.jsonl").read_text(encoding="utf-8").splitlines()
     assert lines == [record.to_json() for record in notes.records]
     assert json.loads((folder / "summary.json").read_text(encoding="utf-8")) == summary
-    assert list(summary) == ["version", "scenario", "seed", "totals", "profiles", "timing"]
+    assert list(summary) == ["version", "fingerprint", "scenario", "seed", "totals", "profiles", "timing"]
     assert set(summary["profiles"]["speed_oriented"]) == {
         "convergence_episode",
         "best_distance",
