@@ -1,18 +1,18 @@
 """Where the time of an episode goes: the physics, the MPC, planning, and the other systems.
 
-The whole station is simulated under Python's profiler, which counts the CPU time of this process. What no Python code
-has taken is compiled: the plant's steps, contact and kinematics. The profiler itself slows Python code down, so the
-compiled share is a little larger without it; how much, the two rows of the whole episode tell.
+The whole station is simulated under a profiler that counts the processor time of the simulating thread. What no Python
+code has taken is compiled: the plant's steps, contact and kinematics. The profiler itself slows Python code down, so
+the compiled share is a little larger without it; how much, the two rows of the whole episode tell.
 """
 
 from __future__ import annotations
 
-import cProfile
-import pstats
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from mala_drake.experiments.callee_times import CalleeTimes, time_callees
 from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.scenario import Scenario
 from mala_drake.station import MakeCareStation
@@ -41,22 +41,23 @@ def bench_episode(
     Args:
         tasks: of the episodes.
         time_limit: seconds of simulation after which an episode ends in any case.
+
+    Raises:
+        BadInput: if this thread is being profiled already.
     """
     return [row for task in tasks for row in _measure(Scenario(task=task, episodes=1, episode_time_limit=time_limit))]
 
 
 def _measure(scenario: Scenario) -> list[dict[str, Any]]:
-    station = MakeCareStation(scenario)
-    started = time.process_time()
-    simulate_episode(station, scenario, episode=0, carried=Carried())
-    undisturbed = time.process_time() - started
-    profile = cProfile.Profile(time.process_time, builtins=False)
-    record, _ = profile.runcall(simulate_episode, station, scenario, episode=0, carried=Carried())
-    parts = _parts(pstats.Stats(profile))
-    whole = sum(parts.values())
+    simulate = partial(simulate_episode, MakeCareStation(scenario), scenario, episode=0, carried=Carried())
+    started = time.thread_time()
+    simulate()
+    undisturbed = time.thread_time() - started
+    (record, _), times = time_callees(simulate)
+    parts = _parts(times)
     rows = [
         ("whole episode, without the profiler", undisturbed),
-        ("whole episode", whole),
+        ("whole episode", times.whole),
         *sorted(parts.items(), key=lambda item: -item[1]),
     ]
     return [
@@ -64,21 +65,19 @@ def _measure(scenario: Scenario) -> list[dict[str, Any]]:
             "task": scenario.task,
             "part": part,
             "cpu_s": seconds,
-            "share": seconds / whole,
+            "share": seconds / times.whole,
             "ms_per_simulated_s": 1e3 * seconds / record.sim_time_s,
         }
         for part, seconds in rows
     ]
 
 
-def _parts(stats: Any) -> dict[str, float]:
-    """CPU seconds by part, of everything that is called from `simulate_episode` and not by way of other Python code."""
-    (episode,) = [key for key in stats.stats if key[2] == simulate_episode.__name__]
-    parts = {_COMPILED: stats.stats[episode][2]}  # Its own time: nothing of it is spent in Python but a short loop.
-    for (file, _, _), (_, _, _, _, callers) in stats.stats.items():
-        if episode in callers:
-            part = _part(Path(file))
-            parts[part] = parts.get(part, 0.0) + callers[episode][3]
+def _parts(times: CalleeTimes) -> dict[str, float]:
+    """Seconds by part; what the episode has not spent in its callees is compiled, but for a short loop of its own."""
+    parts = {_COMPILED: times.whole - sum(times.by_file.values())}
+    for file, seconds in times.by_file.items():
+        part = _part(Path(file))
+        parts[part] = parts.get(part, 0.0) + seconds
     return parts
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -107,13 +106,8 @@ def whole_run() -> Callable[..., tuple[list[str], list[Carried]]]:
 def dask_address() -> Iterator[str]:
     """The address of a scheduler with two workers, which import this very tree."""
     distributed = pytest.importorskip("distributed")
-    before = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = str(Path(mala_drake.__file__).parents[1])
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-    try:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(Path(mala_drake.__file__).parents[1]))
+        cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with cluster:
         yield cluster.scheduler_address
-    finally:
-        cluster.close()
-        os.environ.pop("PYTHONPATH")
-        if before is not None:
-            os.environ["PYTHONPATH"] = before

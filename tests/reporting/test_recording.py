@@ -155,7 +155,7 @@ def told_by_browser(tmp_path):
             command = [BROWSER, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}", url]
             with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as browser:
                 try:
-                    return answers.get(timeout=60)
+                    return answers.get(timeout=240)
                 finally:
                     browser.terminate()
 

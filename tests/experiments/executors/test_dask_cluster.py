@@ -24,13 +24,19 @@ def no_client(monkeypatch):
     monkeypatch.setattr(distributed, "Client", refuse)
 
 
-def test_calls_are_spread_over_the_cluster_and_a_key_keeps_its_worker(dask_address):
+def meeting(own, other):
+    """Code for a call that waits for the file of another one, a minute at most, and tells where it has waited."""
+    wait = f"__import__('time').sleep(0.01) for _ in range(6000) if not __import__('os').path.exists({str(other)!r})"
+    return f"(open({str(own)!r}, 'w').close(), [{wait}], __import__('os').getpid())[-1]"
+
+
+def test_calls_are_spread_over_the_cluster_and_a_key_keeps_its_worker(dask_address, tmp_path):
     places = {}
     with mut.DaskExecutor(eval, address=dask_address) as executor:
         assert executor.capacity == 2
-        for _ in range(3):
-            for key in "ab":
-                executor.submit(key, "__import__('time').sleep(0.2) or __import__('os').getpid()")
+        for turn in range(3):
+            for key, other in ("ab", "ba"):  # Each is under way until both are: neither could take the other's place.
+                executor.submit(key, meeting(tmp_path / f"{key}{turn}", tmp_path / f"{other}{turn}"))
             for finished in (executor.next_finished(), executor.next_finished()):
                 assert finished.error is None
                 assert places.setdefault(finished.key, finished.result) == finished.result

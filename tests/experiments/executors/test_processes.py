@@ -88,7 +88,7 @@ def test_a_process_that_dies_between_two_calls_is_noticed_at_the_second():
     with mut.ProcessExecutor(eval, jobs=1) as executor:
         executor.submit("a", "__import__('os').getpid()")
         os.kill(executor.next_finished().result, 9)
-        time.sleep(0.2)
+        executor._workers[0].process.join()
         executor.submit("b", "1")
         assert executor.next_finished().error == "its process was killed by SIGKILL"
         executor.submit("b", "1")
