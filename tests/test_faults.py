@@ -186,8 +186,8 @@ def test_a_solver_that_fails_for_a_second_costs_no_more_than_that(monkeypatch):
 def test_a_battery_that_empties_on_the_way_stops_the_robot_and_fails_the_episode():
     episode = Episode(one_episode())
     episode.advance(8.0)
-    battery, context = episode.own("battery")
-    battery.SetCharge(context, 0.004)
+    _, context = episode.own("battery")
+    context.SetDiscreteState([0.004])
     assert episode.advance(60.0, until=episode.finished)
     assert not episode.report().success
     assert "battery" in episode.report().failure

@@ -88,7 +88,6 @@ class DriveRun:
     samples: list[Sample] = field(default_factory=list)
     preparation: list[float] = field(default_factory=list)  # Of each solve in two phases.
     feedback: list[float] = field(default_factory=list)  # Of each solve, all of it where there is one phase only.
-    wall: list[float] = field(default_factory=list)  # Wall milliseconds of the same.
     cost: float = 0.0  # Sum of the stage costs along the way, against the references of each step.
     min_clearance: float = np.inf  # Metres between body and anything solid.
     position_error: float = np.inf  # Metres between the last state and the goal.
@@ -143,9 +142,7 @@ def _loop(
     run, progress, state, warm_start = DriveRun(), _Progress(), drive.start, None
     for _ in range(drive.steps):
         parameters = progress.parameters(drive, problem, state)
-        started = time.perf_counter()
         solution, spent = step(state, parameters, warm_start)
-        run.wall.append(1e3 * (time.perf_counter() - started))
         run.feedback.append(spent)
         run.samples.append(Sample(state, parameters, warm_start, solution))
         run.cost += _stage_cost(state, solution.controls[0], parameters.stage)

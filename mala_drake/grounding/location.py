@@ -51,7 +51,3 @@ class LocationMembership:
         distance = np.sqrt((offset * offset).sum(axis=-1, keepdims=True))
         direction = np.divide(offset, distance, out=np.zeros_like(offset), where=distance > 0.0)
         return self.profile.derivative(distance) * direction
-
-    def centre_gradient(self, position: npt.ArrayLike) -> FloatArray:
-        """The derivative with respect to the centre."""
-        return -self.gradient(position)

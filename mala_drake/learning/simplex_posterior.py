@@ -66,11 +66,6 @@ class SimplexPosterior:
         """The standard deviation of each weight, (5,)."""
         return np.sqrt(np.diag(self.covariance))
 
-    @property
-    def effective_points(self) -> float:
-        """How many equally probable points would tell as much (Kish)."""
-        return 1.0 / float(self.probabilities @ self.probabilities)
-
     def interval(self, probability: float) -> FloatArray:
         """The equal-tailed credible interval of each weight: lower and upper ends, (5, 2)."""
         tails = np.array([0.5 * (1.0 - probability), 0.5 * (1.0 + probability)])

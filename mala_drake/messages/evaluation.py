@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 from mala_drake.messages.actions import Action, Outcome
 from mala_drake.messages.message import Message
@@ -61,7 +60,6 @@ class EpisodeReport(Message):
     duration: float = 0.0  # Seconds.
     battery_start: float = 1.0
     battery_end: float = 1.0
-    details: tuple[tuple[str, Any], ...] = field(default=())
 
 
 @dataclass(frozen=True, slots=True)

@@ -63,12 +63,6 @@ class Battery(LeafSystem):
         self.DeclareStateOutputPort("charge", charge)
         self.DeclarePeriodicDiscreteUpdateEvent(PLANT_STEP, 0.0, self._integrate)
 
-    def SetCharge(self, context: Context, charge: float) -> None:
-        """Sets the state of charge in `context`, this system's own, to a value in [0, 1]."""
-        if not 0.0 <= charge <= 1.0:
-            raise ValueError(f"charge={charge!r} is not in [0, 1]")
-        context.SetDiscreteState([charge])
-
     def _integrate(self, context: Context, discrete_state: DiscreteValues) -> None:
         draw, charging = self._charge_rates.Eval(context).tolist()
         rate = charging - draw - self._power.Eval(context).item() / self._capacity

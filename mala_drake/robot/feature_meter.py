@@ -76,9 +76,9 @@ class FeatureMeter(LeafSystem):
         - action_features
 
     `features` are (time, safety, battery, proximity, approach) so far, each divided by its scale and cut to [0, 1].
-    `episode_report` is empty (sequence 0) until the task is finished, and again once the next one begins; its `details`
-    are the five sums unscaled. `action_features` are those of the newest action that has ended, unscaled, as long as
-    the task report names it as the last one.
+    `episode_report` is empty (sequence 0) until the task is finished, and again once the next one begins.
+    `action_features` are those of the newest action that has ended, unscaled, as long as the task report names it as
+    the last one.
 
     Between two ticks the robot is taken to drive straight, at constant speed, and the rates of
     `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not counted as
@@ -209,7 +209,6 @@ class FeatureMeter(LeafSystem):
         if not sums.closed or task.sequence != sums.task or report.sequence != sums.task:
             output.set_value(EpisodeReport())
             return
-        names = ("duration", "risk", "charge_used", "discomfort", "approach_error")
         output.set_value(
             EpisodeReport(
                 sequence=task.sequence,
@@ -225,7 +224,6 @@ class FeatureMeter(LeafSystem):
                 duration=float(sums.duration),
                 battery_start=float(sums.charge_at_start),
                 battery_end=float(sums.charge),
-                details=tuple((name, float(getattr(sums, name))) for name in names),
             )
         )
 

@@ -77,10 +77,6 @@ class SafetyMonitor(LeafSystem):
         )
         self.DeclarePeriodicDiscreteUpdateEvent(PLANT_STEP, 0.0, self._update)
 
-    def Restart(self, context: Context) -> None:
-        """Forgets what was seen so far, for a new episode; `context` is this system's own."""
-        context.SetDiscreteState(self._watch, _START)
-
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         state = discrete_state.get_mutable_vector(self._watch)
         watch = state.value().tolist()

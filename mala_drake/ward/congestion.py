@@ -49,11 +49,6 @@ class Congestion:
         middles, lengths = sample(points)
         return float(self.level(middles) @ lengths / RISK_LENGTH)
 
-    def travel_time(self, points: ArrayLike) -> float:
-        """Seconds along the polyline at the speed limit."""
-        middles, lengths = sample(points)
-        return float(np.sum(lengths / self.speed_limit(middles)))
-
 
 def sample(points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Cuts a polyline into short pieces: their middles, shape (m, 2), and lengths, shape (m,), in metres."""

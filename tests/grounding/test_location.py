@@ -25,11 +25,6 @@ def test_gradients_are_those_of_finite_differences(centre, position, profile):
     np.testing.assert_allclose(
         location.gradient(position), finite_differences(location.value, np.array(position)), atol=1e-7
     )
-    np.testing.assert_allclose(
-        location.centre_gradient(position),
-        finite_differences(lambda moved: LocationMembership(tuple(moved), profile).value(position), np.array(centre)),
-        atol=1e-7,
-    )
 
 
 def test_the_gradient_at_the_centre_is_zero_even_on_a_tip():

@@ -49,14 +49,6 @@ def test_a_broken_reading_changes_nothing(dut, rate, bad):
     assert _run(dut, 1.0, **{rate: bad}) == 0.8
 
 
-def test_the_charge_can_be_set(dut):
-    context = dut.CreateDefaultContext()
-    dut.SetCharge(context, 0.25)
-    assert dut.GetOutputPort("charge").Eval(context) == [0.25]
-    with pytest.raises(ValueError, match="charge"):
-        dut.SetCharge(context, math.nan)
-
-
 @pytest.mark.parametrize("charge", [-0.1, 1.1, math.nan])
 def test_refuses_an_initial_charge_that_is_none(charge):
     with pytest.raises(BadInput, match="initial_charge"):

@@ -15,12 +15,21 @@ from mala_drake.ward.drive_path import make_drive_path
 from mala_drake.ward.features import FEATURE_SCALES, IDEAL_HAND_OVER, FeatureRates, FeatureScales, approach_error
 from mala_drake.ward.legs import leg_planner
 
+_UNCUT = 1024.0  # More than any sum, and a power of two: features are the sums themselves, to the last bit.
+UNCUT = dict.fromkeys(FEATURE_SCALES, FeatureScales(_UNCUT, _UNCUT, _UNCUT, _UNCUT, _UNCUT))
+
+
+def sums_of(report):
+    """The unscaled sums of a task that was measured with the scales `UNCUT`, by name."""
+    names = ("duration", "risk", "charge_used", "discomfort", "approach_error")
+    return {name: _UNCUT * feature for name, feature in zip(names, report.features, strict=True)}
+
 
 class Stage:
     """A meter whose inputs are in the test's hands, at the beginning of task 1."""
 
-    def __init__(self, ward, *, start=(0.0, 0.0, 0.0), charge=1.0, task="medication", **options):
-        self.meter = mut.FeatureMeter(ward, **options)
+    def __init__(self, ward, *, start=(0.0, 0.0, 0.0), charge=1.0, task="medication", scales=UNCUT, **options):
+        self.meter = mut.FeatureMeter(ward, scales=scales, **options)
         self.simulator = Simulator(self.meter)
         self.context = self.simulator.get_mutable_context()
         self.task = self._fix("task", Value(Task(1, task)))
@@ -52,7 +61,7 @@ class Stage:
 
     def measured(self):
         """The unscaled sums of the finished task, by name."""
-        return dict(self.finish(success=True).details)
+        return sums_of(self.finish(success=True))
 
 
 def drive(stage, path):
@@ -75,7 +84,7 @@ def risk_on(ward, *, episode, **options):
     drive(stage, make_drive_path(leg_planner(ward).between("home", "pharmacy_north"), Congestion(ward)))
     stage.report.GetMutableData().set_value(TaskReport(2, finished=True, success=True))
     stage.tick()
-    return dict(stage.output("episode_report").details)
+    return sums_of(stage.output("episode_report"))
 
 
 def test_on_a_busy_day_risk_alone_is_larger_and_nobody_knows_beforehand(ward):
@@ -212,7 +221,7 @@ def test_a_finished_task_is_measured_no_further(ward):
 
 
 def test_the_next_task_is_measured_from_its_own_beginning(ward):
-    stage = Stage(ward)
+    stage = Stage(ward, scales=FEATURE_SCALES)
     stage.tick(pose=(0.4, 0.0, 0.0), charge=0.7)
     stage.finish(success=True)
     stage.task.GetMutableData().set_value(Task(2, "medication", 1))
@@ -278,7 +287,7 @@ def test_actions_add_up_to_the_episode(ward):
     stage.tick()
     parts.append(stage.output("action_features"))
     assert [part.action.sequence for part in parts] == [1, 2, 3, 4, 5, 6]
-    whole = dict(stage.output("episode_report").details)
+    whole = sums_of(stage.output("episode_report"))
     whole["duration"] -= TICK  # Before the first action was seen.
     for name in ("duration", "risk", "charge_used", "discomfort"):
         assert sum(getattr(part, name) for part in parts) == pytest.approx(whole[name])
@@ -294,7 +303,7 @@ def test_a_hand_over_is_told_with_its_pose_and_without_the_looks_of_the_dish(war
     stage.tick()
     pose_error = approach_error((0.3, 0.1, 0.4), IDEAL_HAND_OVER)
     assert stage.output("action_features").approach_error == pytest.approx(pose_error)
-    assert dict(stage.output("episode_report").details)["approach_error"] > pose_error + 1.0
+    assert sums_of(stage.output("episode_report"))["approach_error"] > pose_error + 1.0
 
 
 def test_what_the_report_does_not_name_as_the_last_action_is_not_told(ward):

@@ -40,17 +40,15 @@ def test_the_risk_of_a_straight_path_is_level_times_length_of_each_piece(congest
     # From x = -2 to 10 at y = 4: 2 m outside, 2 m calm, 4 m busy, 2 m calm, 2 m outside.
     expected = (4 * BACKGROUND + 4 * 0.1 + 4 * 0.4) / mut.RISK_LENGTH
     assert congestion.risk([[-2, 4], [10, 4]]) == pytest.approx(expected, rel=1e-9)
-    assert congestion.travel_time([[-2, 4], [10, 4]]) == pytest.approx((4 * 1.02 + 4 * 1.1 + 4 * 1.4) / 1.5)
 
 
 @settings(max_examples=30)
 @given(corners=st.lists(st.tuples(st.floats(-5, 15), st.floats(-5, 15)), min_size=3, max_size=5))
-def test_risk_and_time_add_up_along_a_path(congestion, corners):
-    corners = np.array(corners)
-    for measure in (congestion.risk, congestion.travel_time):
-        assert measure(corners) == pytest.approx(measure(corners[:2]) + measure(corners[1:]), abs=1e-9)
-        # The samples of the way back are the same up to rounding, which matters on a zone's border only.
-        assert measure(corners[::-1]) == pytest.approx(measure(corners), rel=0.02, abs=0.01)
+def test_risk_adds_up_along_a_path(congestion, corners):
+    corners, risk = np.array(corners), congestion.risk
+    assert risk(corners) == pytest.approx(risk(corners[:2]) + risk(corners[1:]), abs=1e-9)
+    # The samples of the way back are the same up to rounding, which matters on a zone's border only.
+    assert risk(corners[::-1]) == pytest.approx(risk(corners), rel=0.02, abs=0.01)
 
 
 @given(corners=st.lists(st.tuples(st.floats(-50, 50), st.floats(-50, 50)), min_size=2, max_size=5))

@@ -59,11 +59,6 @@ class ClosedLoopRun(Message):
         broken = [i for i, step in enumerate(self.steps) if not (step.solved and step.regularity.differentiable)]
         return ClosedLoopRun(self.steps[broken[-1] + 1 :] if broken else self.steps)
 
-    @property
-    def irregular_steps(self) -> tuple[int, ...]:
-        """Where a solve failed, or a condition of the implicit function theorem does, be it a weakly active bound."""
-        return tuple(i for i, step in enumerate(self.steps) if not (step.solved and step.regularity.regular))
-
 
 class ClosedLoop:
     """Runs a leg over f* with converged solutions of an MPC."""

@@ -35,7 +35,7 @@ def test_a_failed_solve_is_told_and_gives_no_number(small, analysis, choose):
     leg = ConstantParameters(choose(), analysis.columns, ("terminal",))
     run = loop.run(np.full(6, np.nan), leg, choose().dynamics.vector, 2)
     assert not run.differentiable
-    assert run.irregular_steps == (0, 1)
+    assert [step.solved for step in run.steps] == [False, False]
     assert np.isnan(run.steps[0].policy_by_knobs).all()
 
 
@@ -47,6 +47,6 @@ def test_a_weakly_active_bound_is_irregular_yet_differentiable(small, analysis, 
     chosen = replace(chosen, stage=replace(chosen.stage, references=references))
     loop = mut.ClosedLoop(analysis, MakeSolver("snopt", small), SimulationModel(period=small.period))
     run = loop.run(state, ConstantParameters(chosen, analysis.columns, ("terminal",)), chosen.dynamics.vector, 1)
-    assert run.irregular_steps == (0,)
+    assert not run.steps[0].regularity.regular
     assert run.differentiable
     assert run.steps[0].regularity.weakly_active[:, 1].any()
