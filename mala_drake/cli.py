@@ -108,7 +108,7 @@ def _chosen_scenario(
     file: Path | None, task: str | None, profile: str | None, episodes: int | None, seed: int | None, solver: str | None
 ) -> Scenario:
     """The scenario of the file with what the options change; a mistake is told by the name of its option."""
-    from mala_drake.scenario import LoadScenario, Validate
+    from mala_drake.scenario import LoadScenario, Validate, reset_unused
 
     chosen = LoadScenario(file)
     chosen.task = chosen.task if task is None else task
@@ -117,6 +117,7 @@ def _chosen_scenario(
     chosen.episodes = chosen.episodes if episodes is None else episodes
     chosen.random_seed = chosen.random_seed if seed is None else seed
     chosen.control.solver = chosen.control.solver if solver is None else solver
+    reset_unused(chosen)  # What the file sets of the solver that an option has replaced.
     try:
         Validate(chosen, where="")
     except BadInput as error:

@@ -324,6 +324,21 @@ def test_an_interrupted_run_says_so_without_a_traceback(capfd, monkeypatch, tmp_
     assert errors.strip() == "mala-drake: interrupted; what was written before stays"
 
 
+def test_another_solver_runs_without_what_the_file_sets_of_its_own(capfd, monkeypatch, tmp_path):
+    seen = []
+
+    def interrupted(scenario, *arguments, **options):
+        seen.append(scenario)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mala_drake.experiments.run.run_scenario", interrupted)
+    (tmp_path / "my.yaml").write_text("control: {sqp_iterations: 1, tolerance: 0.001}")
+    call(capfd, "run", tmp_path / "my.yaml", "--out", tmp_path)
+    call(capfd, "run", tmp_path / "my.yaml", "--out", tmp_path, "--solver", "snopt")
+    controls = [(s.control.solver, s.control.sqp_iterations, s.control.tolerance) for s in seen]
+    assert controls == [("rti", 1, 0.001), ("snopt", 20, 0.001)]
+
+
 def test_a_failed_run_is_status_one_with_only_json_on_standard_output(tmp_path):
     (tmp_path / "short.yaml").write_text("episodes: 1\nepisode_time_limit: 1\n")
     done = process("run", "short.yaml", "--out", "results", "--json", folder=tmp_path)

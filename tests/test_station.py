@@ -123,6 +123,18 @@ def test_the_learners_of_the_controller_listen_to_each_other():
     assert open_inputs(station, [*OURS, *learners]) == []
 
 
+def test_the_controllers_solver_is_the_one_of_the_scenario():
+    scenario = Scenario()
+    scenario.control.solver, scenario.control.tolerance, scenario.control.hard_clearance = "snopt", 1e-3, True
+    solver = mut.MakeCareStation(scenario).GetSubsystemByName("mpc_controller")._solver
+    assert (solver.name, solver._tolerance, solver._hard_clearance) == ("snopt", 1e-3, True)
+    scenario.control.solver, scenario.control.qp_solver, scenario.control.sqp_iterations = "rti", "clarabel", 3
+    solver = mut.MakeCareStation(scenario).GetSubsystemByName("mpc_controller")._solver
+    tools = solver._tools
+    assert (tools.tolerance, tools.hard_clearance, tools.qp_solver.name) == (1e-3, True, "clarabel")
+    assert solver._sqp_iterations == 3
+
+
 def test_a_displaced_place_is_elsewhere_than_the_robot_believes():
     station = mut.MakeCareStation(displaced())
     inspector = station.GetSubsystemByName("scene_graph").model_inspector()

@@ -28,7 +28,10 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         "uniform_weights": ({"learner": {"name": "fixed"}}, "nothing is learned: even weights in every episode"),
         "random_weights": ({"learner": {"name": "random"}}, "nothing is learned: other random weights in each episode"),
         # Parts left out.
-        "no_exploration": ({"learner": {"exploration_until": 1.0}}, "plans with its best estimate always"),
+        "no_exploration": (
+            {"learner": {"name": "posterior", "exploration_until": 1.0}},
+            "posterior, which plans with its best estimate always",
+        ),
         "no_exploration_decay": (
             {"learner": {"name": _GRADIENT, "exploration_decay": 0.0}},
             "projected_gradient, whose exploration never falls",

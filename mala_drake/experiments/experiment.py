@@ -13,7 +13,7 @@ from mala_drake.configuration import typed
 from mala_drake.errors import BadInput
 from mala_drake.fingerprint import fingerprint
 from mala_drake.patient.profiles import PROFILES
-from mala_drake.scenario import Scenario, Validate
+from mala_drake.scenario import Scenario, Validate, reset_unused
 
 MAIN = ""
 """The condition whose runs lie in no folder of their own."""
@@ -72,11 +72,15 @@ class Experiment:
     def scenario(self, run: RunName) -> Scenario:
         """What a run simulates.
 
+        Where the condition replaces a choice of the base, as its learner, what the base sets of that choice goes with
+        it.
+
         Raises:
             BadInput: if a change does not fit a scenario.
         """
         where = f"condition {run.condition}" if run.condition else "scenario"
         scenario = typed(Scenario, self.conditions[run.condition], where=where, defaults=self.base)
+        reset_unused(scenario)
         scenario.random_seed = run.seed
         if run.profile != CUSTOM:
             scenario.patient.profile, scenario.patient.true_weights = run.profile, []

@@ -15,6 +15,7 @@ from mala_drake.scenario.fields import (
     WorldConfig,
 )
 from mala_drake.scenario.file import LoadScenario
+from mala_drake.scenario.unused import reset_unused
 from mala_drake.scenario.validation import Validate
 
 __all__ = [
@@ -32,4 +33,5 @@ __all__ = [
     "Scenario",
     "Validate",
     "WorldConfig",
+    "reset_unused",
 ]

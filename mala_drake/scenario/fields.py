@@ -113,6 +113,11 @@ class ControlConfig:
 
     solver: str = "rti"  # rti, snopt or ipopt: three solvers of one problem.
     sqp_iterations: int = 20  # Of solver rti, at most, per sample; 1 is the real-time iteration.
+    qp_solver: str = "daqp"  # Of solver rti, for its quadratic programs: daqp, clarabel or osqp.
+    tolerance: float = 1e-4  # On first-order optimality, of any solver.
+    hard_clearance: bool = (
+        False  # Whether the clearance is also a constraint, where it can be kept, or a penalty alone.
+    )
     horizon: int = 20  # Stages of one control period.
     horizon_kind: str = "receding"  # receding (always as long), or shrinking (to the end of the leg).
     step_budget: int = 400  # Control steps of one leg.
@@ -128,7 +133,8 @@ class ControlConfig:
     @property
     def solver_options(self) -> dict[str, Any]:
         """What `MakeSolver` is to be told besides the name."""
-        return {"sqp_iterations": self.sqp_iterations} if self.solver == "rti" else {}
+        own = {"sqp_iterations": self.sqp_iterations, "qp_solver": self.qp_solver} if self.solver == "rti" else {}
+        return {"tolerance": self.tolerance, "hard_clearance": self.hard_clearance, **own}
 
 
 @dataclass

@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from mala_drake.control.qp.choice import QP_SOLVER_NAMES
 from mala_drake.control.solver import SOLVER_NAMES
 from mala_drake.errors import BadInput
 from mala_drake.grounding.atom_memberships import MEMBERSHIP_NAMES
@@ -16,6 +17,7 @@ from mala_drake.patient.profiles import PROFILES
 from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import validated_weights
 from mala_drake.scenario.fields import HORIZON_KINDS, TARGET_EVIDENCE, Scenario
+from mala_drake.scenario.unused import refuse_unused
 from mala_drake.ward.displacement import taken_place
 from mala_drake.ward.items import all_items
 from mala_drake.ward.models import ward_models
@@ -38,6 +40,8 @@ def Validate(scenario: Scenario, *, where: str = "scenario") -> None:
     _finite(scenario, at)
     _check_names(scenario, at)
     _check_ranges(scenario, at)
+    refuse_unused(scenario, at)
+    _check_control_learners(scenario, at)
     for name, weights in (
         ("patient.true_weights", scenario.patient.true_weights),
         ("patient.earlier_weights", scenario.patient.earlier_weights),
@@ -81,6 +85,7 @@ def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "grounding.membership", scenario.grounding.membership, MEMBERSHIP_NAMES)
     _one_of(at + "learner.name", scenario.learner.name, LEARNER_NAMES)
     _one_of(at + "control.solver", scenario.control.solver, SOLVER_NAMES)
+    _one_of(at + "control.qp_solver", scenario.control.qp_solver, QP_SOLVER_NAMES)
     _one_of(at + "control.horizon_kind", scenario.control.horizon_kind, HORIZON_KINDS)
     _one_of(at + "control.target_evidence", scenario.control.target_evidence, TARGET_EVIDENCE)
 
@@ -114,6 +119,7 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("planner.max_actions", scenario.planner.max_actions, 1, 10_000),
         ("planner.max_expansions", scenario.planner.max_expansions, 1, 100_000_000),
         ("control.horizon", control.horizon, 2, 200),
+        ("control.tolerance", control.tolerance, 1e-10, 0.1),
         ("control.translation_rate", control.translation_rate, 1e-9, 1.0),
         ("control.sqp_iterations", control.sqp_iterations, 1, 1_000),
         ("control.step_budget", control.step_budget, 1, 100_000),
@@ -124,6 +130,16 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         if not low <= value <= high:
             limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:.10g}"
             raise BadInput(at + name, f"{value:.10g}", limits)
+
+
+def _check_control_learners(scenario: Scenario, at: str) -> None:
+    """Who learns from simulated legs has to be able to differentiate them as they were driven."""
+    control = scenario.control
+    names = [name for name in ("learned_targets", "learned_weights", "learned_translation") if getattr(control, name)]
+    if names and control.hard_clearance:
+        raise BadInput(
+            at + "control.hard_clearance", f"true, with {names[0]}", "false: legs are differentiated with the penalty"
+        )
 
 
 def _checked_ward(scenario: Scenario, at: str) -> Ward:

@@ -9,7 +9,7 @@ import yaml
 
 from mala_drake.experiments import ablations as mut
 from mala_drake.experiments.experiment import Experiment, RunName
-from mala_drake.scenario import LoadScenario, Scenario, Validate
+from mala_drake.scenario import LearnerConfig, LoadScenario, Scenario, Validate
 from mala_drake.station import MakeCareStation
 
 BASE = Scenario(task="alternate", episodes=2)
@@ -96,6 +96,28 @@ def test_the_options_reach_the_systems():
     assert set(memberships.values) <= {0.0, 1.0}
     assert station.GetSubsystemByName("feature_meter")._risk_variation == 0.15
     assert station.GetSubsystemByName("patient")._earlier == (0.1, 0.1, 0.3, 0.1, 0.4)
+
+
+OWN = {
+    "posterior": {"exploration_until": 0.1},
+    "projected_gradient": {"learning_rate": 0.05, "exploration": 0.3},
+    "reference_gradient": {"learning_rate": 0.05, "exploration_decay": 0.0},
+}
+
+
+@pytest.mark.parametrize("learner", OWN)
+def test_a_condition_is_what_it_says_whatever_the_file_says_of_its_own_learner(learner):
+    base = Scenario(learner=LearnerConfig(name=learner, **OWN[learner]))
+    Validate(base)
+    experiment = Experiment("ablations", base, mut.ablation_conditions(base, None), ("comfort_focused",), (1,))
+    experiment.validate()
+    for condition, changes in experiment.conditions.items():
+        changed = experiment.scenario(RunName(condition, "comfort_focused", 1))
+        told, found = dict(flat(changes)), dict(flat(asdict(changed)))
+        assert {name: found[name] for name in told} == told
+        if changed.learner.name == learner:
+            kept = {f"learner.{name}": value for name, value in OWN[learner].items()}
+            assert {name: found[name] for name in kept} == {**kept, **{n: told[n] for n in kept if n in told}}
 
 
 def test_conditions_come_in_the_order_of_the_table():

@@ -113,6 +113,20 @@ def test_what_does_not_fit_is_told_in_one_line(kind, options, words):
         chosen(kind, **options)
 
 
+def test_learners_are_compared_each_with_what_the_file_sets_of_it(tmp_path):
+    (tmp_path / "base.yaml").write_text("learner: {name: projected_gradient, learning_rate: 0.05}")
+    experiment = chosen(scenario=tmp_path / "base.yaml", conditions=("projected_gradient", "posterior"))
+    rates = {run.condition: experiment.scenario(run).learner.learning_rate for run in experiment.runs}
+    assert rates == {"": 0.05, "posterior": Scenario().learner.learning_rate}
+
+
+def test_another_solver_drives_without_what_the_file_sets_of_its_own(tmp_path):
+    (tmp_path / "base.yaml").write_text("control: {sqp_iterations: 1, tolerance: 0.001}")
+    experiment = chosen(scenario=tmp_path / "base.yaml", solver="snopt")
+    control = experiment.scenario(experiment.runs[0]).control
+    assert (control.solver, control.sqp_iterations, control.tolerance) == ("snopt", 20, 0.001)
+
+
 def test_a_learner_that_does_not_fit_the_file_is_refused(tmp_path):
     (tmp_path / "base.yaml").write_text("learner: {name: fixed, initial_weights: [1, 0, 0, 0, 0]}")
     with pytest.raises(BadInput, match=r"learner\.initial_weights: given to posterior"):

@@ -49,5 +49,12 @@ def test_a_scenario_may_say_itself_what_is_displaced():
     assert chosen.displacements(chosen.load_ward()) == {"stove": (0.0, -2.5)}
 
 
+def test_what_the_file_says_of_a_learner_that_a_condition_leaves_out_goes_with_it():
+    base = Scenario()
+    base.control.learned_targets, base.control.target_evidence = True, "geometric"
+    assert scenario("geometric", base).control.target_evidence == "geometric"
+    assert scenario("outer_loop_only", base).control == Scenario().control
+
+
 def test_conditions_come_in_the_order_of_the_table():
     assert list(mut.target_conditions(Scenario(), ("outer_loop_only", "full"))) == ["full", "outer_loop_only"]

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 
+from mala_drake.control import SOLVER_NAMES, MakeSolver, OptimalControlProblem
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.scenario import fields as mut
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return OptimalControlProblem(horizon=2)
 
 
 def test_true_weights_replace_the_profile(load_scenario):
@@ -33,6 +41,22 @@ def test_initial_weights_may_be_drawn_by_the_seed(load_scenario):
     assert all(sum(weights) == pytest.approx(1.0) and min(weights) >= 0.0 for weights in drawn)
     untouched = mut.Scenario()
     assert untouched.settled_learner == untouched.learner
+
+
+@pytest.mark.parametrize("name", SOLVER_NAMES)
+def test_the_controllers_solver_is_by_default_as_its_class_makes_it(problem, name):
+    options = mut.ControlConfig(solver=name).solver_options
+    defaults = inspect.signature(type(MakeSolver(name, problem, **options))).parameters
+    assert options == {option: defaults[option].default for option in options}
+
+
+def test_the_options_of_the_controllers_solver_are_the_files(load_scenario):
+    text = "control: {sqp_iterations: 3, qp_solver: clarabel, tolerance: 0.001, hard_clearance: true}"
+    own = {"sqp_iterations": 3, "qp_solver": "clarabel"}
+    common = {"tolerance": 0.001, "hard_clearance": True}
+    assert load_scenario(text).control.solver_options == own | common
+    text = "control: {solver: snopt, tolerance: 0.001, hard_clearance: true}"
+    assert load_scenario(text).control.solver_options == common
 
 
 def test_displaced_places_are_elsewhere_than_on_the_map(load_scenario):

@@ -30,7 +30,7 @@ def test_an_empty_file_is_the_default_scenario(load_scenario):
 
 
 def test_numbers_may_have_exponents(load_scenario):
-    assert load_scenario("learner: {learning_rate: 1e-3}").learner.learning_rate == 1e-3
+    assert load_scenario("control: {tolerance: 1e-3}").control.tolerance == 1e-3
 
 
 def test_a_ward_is_found_from_the_scenario_s_own_folder(tmp_path, load_scenario):

@@ -79,6 +79,18 @@ def test_no_number_may_be_negative(prefix, name):
         ("control: {horizon_kind: growing}", ["control.horizon_kind: 'growing'", "receding, shrinking"]),
         ("control: {translation_rate: 0.0}", ["control.translation_rate: 0", "from 1e-09 to 1"]),
         ("control: {horizon: 1}", ["control.horizon: 1", "from 2"]),
+        ("control: {tolerance: 0.5}", ["control.tolerance: 0.5", "from 1e-10 to 0.1"]),
+        ("control: {tolerance: 0}", ["control.tolerance: 0", "from 1e-10 to 0.1"]),
+        ("control: {qp_solver: guess}", ["control.qp_solver: 'guess'", "daqp, clarabel, osqp"]),
+        ("control: {hard_clearance: 0.1}", ["control.hard_clearance: 0.1", "true or false"]),
+        (
+            "control: {hard_clearance: true, learned_targets: true}",
+            ["control.hard_clearance: true, with learned_targets", "expected false"],
+        ),
+        (
+            "control: {hard_clearance: true, learned_translation: true}",
+            ["control.hard_clearance: true, with learned_translation", "expected false"],
+        ),
         ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
         ("grounding: {membership: vague}", ["grounding.membership: 'vague'", "fuzzy, crisp"]),
         ("world: {risk_variation: 1.5}", ["world.risk_variation: 1.5", "from 0 to 1"]),
