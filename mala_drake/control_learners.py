@@ -51,10 +51,11 @@ def make_control_learners(
 
 
 def _target_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> TargetLearner:
+    simulated = control.target_sensitivity == "simulated"
     return TargetLearner(
         learner=TargetEstimator({place.name: (place.x, place.y) for place in ward.places}),
         yaws={place.name: place.yaw for place in ward.places},
-        sensitivity=TargetSensitivity(_simulator(control, guide, congestion)),
+        sensitivity=TargetSensitivity(_simulator(control, guide, congestion)) if simulated else None,
         mapped=ward.shapes,
         geometric=control.target_evidence == "geometric",
     )

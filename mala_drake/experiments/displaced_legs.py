@@ -18,6 +18,10 @@ class DisplacedLegs:
     E^psi: of being at the place for a leg, of having its things within reach otherwise), `closed_loop_cost` (R^o, the
     leg's tracking and terminal cost), `moved` (whether the target was moved after it), and where the target is then:
     `x`, `y` and `distance_to_true_m`, metres.
+
+    `sensitivity` is what the target was moved through (see `SensitivitySource`; null where it was not moved), and
+    `sensitivity_deviation` is |S - I|_2 of the S that was simulated for it, used or not (null where none was). Earlier
+    versions have not written these two.
     """
 
     def __init__(self, scenario: Scenario, learned: LearnedTargets) -> None:
@@ -46,6 +50,7 @@ class DisplacedLegs:
         if name not in self._true or mismatch.place != name:
             return
         mapped, true = self._mapped[name], self._true[name]
+        moved = learned.updates > self._updates
         x, y = next(((x, y) for place, x, y in learned.targets if place == name), (mapped.x, mapped.y))
         self.entries.append(
             {
@@ -53,10 +58,12 @@ class DisplacedLegs:
                 "outcome": report.outcome.value,
                 "mismatch": mismatch.error,
                 "closed_loop_cost": report.closed_loop_cost,
-                "moved": learned.updates > self._updates,
+                "moved": moved,
                 "x": x,
                 "y": y,
                 "distance_to_true_m": math.dist((x, y), (true.x, true.y)),
+                "sensitivity": learned.sensitivity.value if moved else None,
+                "sensitivity_deviation": learned.deviation if moved else None,
             }
         )
         self._updates = learned.updates

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,7 +16,8 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
 
     `runs` is how many have; `found` how many of them came to be without mismatch for good; `updates` how often the
     target had been moved until then, and `final_distance_m` how far from the true place it was at the end, medians and
-    maxima.
+    maxima. `sensitivities` counts all updates by what they went through (see `SensitivitySource`), and
+    `..._sensitivity_deviation` are |S - I|_2 of the sensitivities that were simulated for them, used or not.
     """
     legs = [[leg for record in records for leg in record.displaced_legs] for records in runs]
     places = sorted({leg["place"] for run in legs for leg in run})
@@ -24,6 +26,9 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
         of_place = [[leg for leg in run if leg["place"] == place] for run in legs]
         driven = [run for run in of_place if run]
         updates = [count for run in driven if (count := updates_until_gone(run)) is not None]
+        moves = [leg for run in driven for leg in run if leg["moved"]]
+        sources = Counter(str(leg["sensitivity"]) for leg in moves if leg.get("sensitivity"))
+        deviations = deviations_of(moves)
         finals = [run[-1]["distance_to_true_m"] for run in driven]
         figures[place] = {
             "runs": len(driven),
@@ -32,8 +37,16 @@ def target_figures(runs: Sequence[Sequence[EpisodeRecord]]) -> dict[str, dict[st
             "max_updates": max(updates, default=None),
             "median_final_distance_m": float(np.median(finals)),
             "max_final_distance_m": max(finals),
+            "sensitivities": dict(sorted(sources.items())),
+            "median_sensitivity_deviation": float(np.median(deviations)) if deviations else None,
+            "max_sensitivity_deviation": max(deviations, default=None),
         }
     return figures
+
+
+def deviations_of(legs: Sequence[dict[str, Any]]) -> list[float]:
+    """|S - I|_2 of each sensitivity that was simulated for an update; of legs that earlier versions wrote, none."""
+    return [float(leg["sensitivity_deviation"]) for leg in legs if leg.get("sensitivity_deviation") is not None]
 
 
 def updates_until_gone(legs: Sequence[dict[str, Any]]) -> int | None:

@@ -2,8 +2,8 @@
 
 Paper, Sec. "Learning Continuous Target Parameters from Symbolic-Control Mismatches". Each seed displaces the places in
 another way. Target by target, `summary.json` tells after how many updates the mismatch was gone and how far the learned
-target is from the true one. The last condition is the ablation "outer loop only": the full system without the learners
-of its inner loop, in the same displaced wards.
+target is from the true one. Two conditions are ablations of the full system, in the same displaced wards: "identity"
+learns targets without the closed-loop sensitivity, and "outer loop only" has none of the learners of the inner loop.
 """
 
 from __future__ import annotations
@@ -33,6 +33,18 @@ _CONDITIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
             {"control": {"learned_targets": True, "target_evidence": "fuzzy"}},
             "targets are learned from missing memberships alone: of being at the place, and of having its things "
             "within reach; the model is nominal",
+        ),
+        "identity": (
+            {
+                "control": {
+                    "learned_targets": True,
+                    "target_evidence": "geometric",
+                    "target_sensitivity": "identity",
+                    "learned_dynamics": True,
+                }
+            },
+            "as full, but the end of a leg is taken to move as its target does, whatever the leg simulated in closed "
+            "loop would say",
         ),
         "outer_loop_only": (
             {"control": {"learned_targets": False, "learned_dynamics": False}},

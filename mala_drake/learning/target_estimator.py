@@ -32,7 +32,6 @@ _EXTENSIONS = (0.0, 0.25, 0.5, 0.75)  # Metres that a step may go on over the pl
 _TURNS = tuple(
     math.radians(angle) for angle in (15.0, 30.0, 45.0, 60.0, 75.0)
 )  # Of a step, to pass what is in the way.
-_MOST_UNLIKE = 0.5  # Of a sensitivity from the identity, by its greatest singular value.
 
 PLATEAU_MARGIN = 0.3
 """Metres past the plateau's edge that a step aims at: the robot may stop half of that from its target this time and the
@@ -85,19 +84,6 @@ class TargetEvidence:
     def demands(self) -> list[FloatArray]:
         """The steps that the missing atoms ask for."""
         return [demand for atom in self.missing if (demand := atom.demand).any()]
-
-
-def plausible_sensitivity(sensitivity: FloatArray | None) -> FloatArray:
-    """The sensitivity of a leg that has stopped at its target, (2, 2), or the identity where it cannot be so.
-
-    A leg that has stopped is within the tolerance of its target, wherever that is: over a step many times as long, the
-    sensitivity is the identity in the mean. Its derivative at one point may be far from that, or not exist (None): of a
-    leg that was over at once, or whose last steps bend because of a limit. Then the mean is the better guess.
-    """
-    identity = np.eye(2)
-    if sensitivity is None or not np.isfinite(sensitivity).all():
-        return identity
-    return sensitivity if float(np.linalg.norm(sensitivity - identity, 2)) <= _MOST_UNLIKE else identity
 
 
 class TargetEstimator(AbstractLearner):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -12,14 +14,9 @@ from pydrake.systems.framework import Context, DiscreteValues
 
 from mala_drake.clock import LEARN_OFFSET, TICK
 from mala_drake.learning.abstract_learner import FloatArray
+from mala_drake.learning.end_sensitivity import EndSensitivity, by_identity, plausible_sensitivity
 from mala_drake.learning.leg_learner import LegLearner
-from mala_drake.learning.target_estimator import (
-    PLATEAU_MARGIN,
-    MissingAtom,
-    TargetEstimator,
-    TargetEvidence,
-    plausible_sensitivity,
-)
+from mala_drake.learning.target_estimator import PLATEAU_MARGIN, MissingAtom, TargetEstimator, TargetEvidence
 from mala_drake.messages import (
     Action,
     ActionKind,
@@ -30,6 +27,7 @@ from mala_drake.messages import (
     Obstacles,
     Outcome,
     PlaceMismatch,
+    SensitivitySource,
     Shape,
 )
 from mala_drake.ward.routes import GOAL_DISTANCE
@@ -42,6 +40,8 @@ _REACH_MARGIN = 0.15
 
 STANDING_DISTANCE = 0.5
 """Metres from anything solid that a target keeps if it is free to; so far off it are the places of the map."""
+
+_SOURCES = tuple(SensitivitySource)  # In the order of the state.
 
 _NOT_THERE = (Outcome.BLOCKED, Outcome.WAYPOINT_ALLOCATION, Outcome.STEP_BUDGET)  # Legs that could not be driven.
 
@@ -94,8 +94,8 @@ class TargetLearner(LegLearner):
 
     Targets stay clear of what is on the map and of what the sensor sees at the end of the leg.
 
-    The discrete state is the learner's own vector and the sequence of the last report; the abstract state is what is
-    known of the last legs.
+    The discrete state is the learner's own vector, the sequence of the last report, and which sensitivity the newest
+    update went through; the abstract state is what is known of the last legs.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class TargetLearner(LegLearner):
         *,
         learner: TargetEstimator,
         yaws: Mapping[str, float],
-        sensitivity: LegSensitivity,
+        sensitivity: LegSensitivity | None,
         mapped: Sequence[Shape],
         geometric: bool = False,
     ) -> None:
@@ -112,7 +112,7 @@ class TargetLearner(LegLearner):
         Args:
             learner: what learns.
             yaws: at the targets, by place, radians.
-            sensitivity: of legs.
+            sensitivity: of legs; None to take the identity for that of each.
             mapped: solid shapes of the map.
             geometric: whether the place as it is seen counts as well, beside the missing membership.
         """
@@ -128,11 +128,17 @@ class TargetLearner(LegLearner):
         self._place_mismatch = self.DeclareAbstractInputPort("place_mismatch", Value(PlaceMismatch()))
         self._reach_mismatch = self.DeclareAbstractInputPort("reach_mismatch", Value(PlaceMismatch()))
         self._learned_weights = self.DeclareAbstractInputPort("learned_weights", Value(LearnedWeights()))
-        self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=1)
+        self._declare_learned("learned_targets", LearnedTargets(), initial_state=learner.initial_state(), marks=3)
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
     def _learned(self, context: Context) -> LearnedTargets:
-        return self._learner.learned(self.learner_state(context))
+        _, source, deviation = self._marks(context).tolist()
+        learned = self._learner.learned(self.learner_state(context))
+        return replace(
+            learned,
+            sensitivity=_SOURCES[int(source)],
+            deviation=deviation if source and math.isfinite(deviation) else None,
+        )
 
     def _target(self, context: Context, place: str) -> tuple[float, float, float]:
         if place not in self._learner.places:
@@ -144,32 +150,39 @@ class TargetLearner(LegLearner):
         return self._learned_weights.Eval(context) if connected else LearnedWeights()
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
-        state, (seen,) = self.learner_state(context), self._marks(context)
+        state, marks = self.learner_state(context), self._marks(context)
         action: Action = self._action.Eval(context)
         port = self._leg_report if action.kind is ActionKind.MOVE else self._in_place_report
         report: ActionReport = port.Eval(context)
-        if report.finished and report.sequence == action.sequence and report.sequence > seen:
-            seen = report.sequence
-            state = self._learned_from(context, state, action, report.outcome)
-        discrete_state.set_value(np.append(state, seen))
+        if report.finished and report.sequence == action.sequence and report.sequence > marks[0]:
+            marks[0] = report.sequence
+            learned = self._learned_from(context, state, action, report.outcome)
+            if learned is not None:
+                state, sensitivity = learned
+                marks[1:] = _SOURCES.index(sensitivity.source), _number(sensitivity.deviation)
+        discrete_state.set_value(np.append(state, marks))
 
-    def _learned_from(self, context: Context, state: FloatArray, action: Action, outcome: Outcome) -> FloatArray:
-        """The learner's state after an action that has ended."""
-        leg, evidence = self._newest_leg(context), None
+    def _learned_from(
+        self, context: Context, state: FloatArray, action: Action, outcome: Outcome
+    ) -> tuple[FloatArray, EndSensitivity] | None:
+        """The learner's state after an action that has ended, and what it was updated through; None if it was not."""
+        leg, found = self._newest_leg(context), None
         if action.kind is ActionKind.MOVE:
-            evidence = self._evidence_of_leg(context, state, leg, outcome)
+            found = self._evidence_of_leg(context, state, leg, outcome)
         elif outcome is Outcome.OUT_OF_REACH and not self._geometric:
-            evidence = self._evidence_of_reach(context, leg)
-        if evidence is None:
-            return state
+            found = self._evidence_of_reach(context, leg)
+        if found is None:
+            return None
+        evidence, sensitivity = found
         # The place as it is seen is where it is; the plateaus of the atoms leave room.
         distance = STANDING_DISTANCE if evidence.offset is None else GOAL_DISTANCE
         clear = self._clearance(context)
-        return self._learner.update(state, action.place, evidence, is_free=lambda point: clear(point) >= distance)
+        after = self._learner.update(state, action.place, evidence, is_free=lambda point: clear(point) >= distance)
+        return None if np.array_equal(after, state) else (after, sensitivity)
 
     def _evidence_of_leg(
         self, context: Context, state: FloatArray, leg: DrivenLeg, outcome: Outcome
-    ) -> TargetEvidence | None:
+    ) -> tuple[TargetEvidence, EndSensitivity] | None:
         mismatch: PlaceMismatch = self._place_mismatch.Eval(context)
         if mismatch.place not in self._learner.places or mismatch.place != leg.action.place:
             return None
@@ -177,34 +190,45 @@ class TargetLearner(LegLearner):
         if outcome is Outcome.SUCCESS:
             if self._learner.is_settled(state, mismatch.place, mismatch.error, offset):
                 return None
-            sensitivity = self._sensitivity_of(leg)
-            return TargetEvidence((_missing(mismatch, sensitivity),), offset, sensitivity, leg.target[:2])
-        if outcome not in _NOT_THERE or (offset is None and self._clearance(context)(leg.target[:2]) >= GOAL_DISTANCE):
+            sensitivity, about = self._sensitivity_of(leg), leg.target[:2]
+        elif outcome not in _NOT_THERE or (
+            offset is None and self._clearance(context)(leg.target[:2]) >= GOAL_DISTANCE
+        ):
             return None
-        # What is missing where the robot is says where the target should be, wherever it was.
-        x, y = self._robot_state.Eval(context)[:2].tolist()
-        return TargetEvidence((_missing(mismatch, np.eye(2)),), offset, np.eye(2), (x, y))
+        else:
+            # What is missing where the robot is says where the target should be, wherever it was.
+            x, y = self._robot_state.Eval(context)[:2].tolist()
+            sensitivity, about = by_identity(SensitivitySource.NOT_NEEDED), (x, y)
+        matrix = sensitivity.matrix
+        return TargetEvidence((_missing(mismatch, matrix),), offset, matrix, about), sensitivity
 
-    def _evidence_of_reach(self, context: Context, leg: DrivenLeg) -> TargetEvidence | None:
+    def _evidence_of_reach(self, context: Context, leg: DrivenLeg) -> tuple[TargetEvidence, EndSensitivity] | None:
         reach: PlaceMismatch = self._reach_mismatch.Eval(context)
         if reach.error == 0.0 or reach.place not in self._learner.places or reach.place != leg.action.place:
             return None
         sensitivity = self._sensitivity_of(leg)
-        missing = [_missing(reach, sensitivity, _REACH_MARGIN)]
+        matrix = sensitivity.matrix
+        missing = [_missing(reach, matrix, _REACH_MARGIN)]
         place: PlaceMismatch = self._place_mismatch.Eval(context)
         if place.place == reach.place:  # The robot still stands where the leg has ended.
-            missing.append(_missing(place, sensitivity))
-        return TargetEvidence(tuple(missing), None, sensitivity, leg.target[:2])
+            missing.append(_missing(place, matrix))
+        return TargetEvidence(tuple(missing), None, matrix, leg.target[:2]), sensitivity
 
-    def _sensitivity_of(self, leg: DrivenLeg) -> FloatArray:
+    def _sensitivity_of(self, leg: DrivenLeg) -> EndSensitivity:
         """D (x, y at the end) / d (x, y of the target) of the newest leg."""
-        found: FloatArray | None
+        if self._sensitivity is None:
+            return by_identity(SensitivitySource.IDENTITY)
+        simulated, trouble = None, "is too far from the identity"
         try:
-            found = self._sensitivity(leg)
+            simulated = self._sensitivity(leg)
         except RuntimeError as error:
-            _logger.info("the leg to %s has no sensitivity: simulated, it %s", leg.action.place, error)
-            found = None
-        return plausible_sensitivity(found)
+            trouble = str(error)
+        found = plausible_sensitivity(simulated)
+        if found.source is SensitivitySource.FALLBACK:
+            _logger.info(
+                "the end of the leg to %s is taken to move as its target: simulated, it %s", leg.action.place, trouble
+            )
+        return found
 
     def _clearance(self, context: Context) -> Callable[[tuple[float, float]], float]:
         """The distance of a point to anything solid, as far as the robot knows and sees, metres."""
@@ -216,3 +240,7 @@ class TargetLearner(LegLearner):
 def _missing(mismatch: PlaceMismatch, sensitivity: FloatArray, margin: float = PLATEAU_MARGIN) -> MissingAtom:
     """The atom of a mismatch, by the target of a leg with this sensitivity."""
     return MissingAtom(mismatch.error, np.array(mismatch.gradient) @ sensitivity, margin)
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value

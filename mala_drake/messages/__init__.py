@@ -15,6 +15,7 @@ from mala_drake.messages.learned import (
     LearnedTargets,
     LearnedWeights,
     Preferences,
+    SensitivitySource,
 )
 from mala_drake.messages.message import Atom, Message
 from mala_drake.messages.observations import (
@@ -52,6 +53,7 @@ __all__ = [
     "Preferences",
     "Ratings",
     "RobotState",
+    "SensitivitySource",
     "Shape",
     "SymbolicState",
     "Task",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 from mala_drake.messages.actions import Action
 from mala_drake.messages.message import Atom, Message
@@ -36,12 +37,28 @@ class LearnedCosts(Message):
     updates: int = 0
 
 
+class SensitivitySource(Enum):
+    """Where a target's update has it from how the end of a leg moves with the target."""
+
+    NONE = ""  # There was no update.
+    SIMULATED = "simulated"  # From the leg, simulated in closed loop.
+    FALLBACK = "fallback"  # The identity, because the simulation failed or what it says cannot be.
+    IDENTITY = "identity"  # The identity, because nothing else is wanted.
+    NOT_NEEDED = "not_needed"  # The leg was not driven to its end: the update is about where the robot is.
+
+
 @dataclass(frozen=True, slots=True)
 class LearnedTargets(Message):
-    """Where legs to places really are to end, as (place, x, y), metres; places not named are where the map says."""
+    """Where legs to places really are to end, as (place, x, y), metres; places not named are where the map says.
+
+    `sensitivity` is what the episode's newest update went through, `deviation` the 2-norm by which the sensitivity that
+    was simulated for it differs from the identity; None if there was none.
+    """
 
     targets: tuple[tuple[str, float, float], ...] = ()
     updates: int = 0  # In all.
+    sensitivity: SensitivitySource = SensitivitySource.NONE
+    deviation: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from mala_drake.reporting.results import Results, load_results
 from mala_drake.reporting.table import Table
 from mala_drake.reporting.target_findings import target_headline, target_sentences
 from mala_drake.reporting.target_results import has_targets
+from mala_drake.reporting.target_sensitivities import sensitivity_sentences, sensitivity_table
 from mala_drake.reporting.target_tables import target_condition_table, target_table
 from mala_drake.reporting.wording import words
 from mala_drake.ward.ward_map import LoadWard, Ward
@@ -74,12 +75,13 @@ def _sections(results: Results, ward: Ward) -> Iterator[Section]:
         yield Section(
             "targets",
             "Targets",
-            target_sentences(results, ward),
+            (*target_sentences(results, ward), *sensitivity_sentences(results)),
             (
                 *target_distance_picture(results, ward),
                 target_table(results, ward),
                 *target_map_pictures(results, ward),
                 target_condition_table(results, ward),
+                *sensitivity_table(results),
             ),
         )
     yield Section(

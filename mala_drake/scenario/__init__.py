@@ -3,6 +3,7 @@
 from mala_drake.scenario.fields import (
     HORIZON_KINDS,
     TARGET_EVIDENCE,
+    TARGET_SENSITIVITIES,
     ControlConfig,
     DisplacedPlaceConfig,
     GroundingConfig,
@@ -21,6 +22,7 @@ from mala_drake.scenario.validation import Validate
 __all__ = [
     "HORIZON_KINDS",
     "TARGET_EVIDENCE",
+    "TARGET_SENSITIVITIES",
     "ControlConfig",
     "DisplacedPlaceConfig",
     "GroundingConfig",

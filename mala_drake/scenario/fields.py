@@ -17,6 +17,7 @@ from mala_drake.ward.ward_map import LoadWard, Ward
 
 HORIZON_KINDS = ("receding", "shrinking")
 TARGET_EVIDENCE = ("fuzzy", "geometric")
+TARGET_SENSITIVITIES = ("simulated", "identity")
 
 
 @dataclass
@@ -125,6 +126,7 @@ class ControlConfig:
     tolerated_failures: int = 5  # Failed solves in a row before the leg has failed.
     learned_targets: bool = False  # Whether targets move to where the mismatch after their legs vanishes.
     target_evidence: str = "fuzzy"  # By what: fuzzy (missing memberships), or geometric (also the place as seen).
+    target_sensitivity: str = "simulated"  # Of a leg's end by its target: simulated (in closed loop), or identity.
     learned_dynamics: bool = False  # Whether the controller's model is corrected by how the robot really drives.
     learned_weights: bool = False  # Whether its weights move, by target, so that legs come to cost what was predicted.
     learned_translation: bool = False  # Whether how preferences become its weights moves likewise.

@@ -42,7 +42,12 @@ def _with_rti(scenario: Scenario) -> bool:
     return scenario.control.solver == "rti"
 
 
+def _with_targets(scenario: Scenario) -> bool:
+    return scenario.control.learned_targets
+
+
 _GRADIENT, _RTI = "learner.name: " + " or ".join(_GRADIENT_LEARNERS), "control.solver: rti"
+_TARGETS = "control.learned_targets: true"
 
 _SETTINGS = (
     _Setting("learner", "learning_rate", _with_gradient, _GRADIENT),
@@ -51,7 +56,8 @@ _SETTINGS = (
     _Setting("learner", "exploration_until", lambda s: s.learner.name == "posterior", "learner.name: posterior"),
     _Setting("control", "sqp_iterations", _with_rti, _RTI),
     _Setting("control", "qp_solver", _with_rti, _RTI),
-    _Setting("control", "target_evidence", lambda s: s.control.learned_targets, "control.learned_targets: true"),
+    _Setting("control", "target_evidence", _with_targets, _TARGETS),
+    _Setting("control", "target_sensitivity", _with_targets, _TARGETS),
     _Setting(
         "control", "translation_rate", lambda s: s.control.learned_translation, "control.learned_translation: true"
     ),

@@ -16,7 +16,7 @@ from mala_drake.learning.make_learner import LEARNER_NAMES, make_learner
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.planning.care_tasks import TASK_NAMES
 from mala_drake.preferences import validated_weights
-from mala_drake.scenario.fields import HORIZON_KINDS, TARGET_EVIDENCE, Scenario
+from mala_drake.scenario.fields import HORIZON_KINDS, TARGET_EVIDENCE, TARGET_SENSITIVITIES, Scenario
 from mala_drake.scenario.unused import refuse_unused
 from mala_drake.ward.displacement import taken_place
 from mala_drake.ward.items import all_items
@@ -88,6 +88,7 @@ def _check_names(scenario: Scenario, at: str) -> None:
     _one_of(at + "control.qp_solver", scenario.control.qp_solver, QP_SOLVER_NAMES)
     _one_of(at + "control.horizon_kind", scenario.control.horizon_kind, HORIZON_KINDS)
     _one_of(at + "control.target_evidence", scenario.control.target_evidence, TARGET_EVIDENCE)
+    _one_of(at + "control.target_sensitivity", scenario.control.target_sensitivity, TARGET_SENSITIVITIES)
 
 
 def _task_choices() -> tuple[str, ...]:

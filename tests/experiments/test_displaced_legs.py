@@ -3,7 +3,15 @@ import math
 import pytest
 
 import mala_drake.experiments.displaced_legs as mut
-from mala_drake.messages import Action, ActionKind, ActionReport, LearnedTargets, Outcome, PlaceMismatch
+from mala_drake.messages import (
+    Action,
+    ActionKind,
+    ActionReport,
+    LearnedTargets,
+    Outcome,
+    PlaceMismatch,
+    SensitivitySource,
+)
 from mala_drake.scenario import DisplacedPlaceConfig, Scenario
 
 MAPPED = (-3.0, 15.0)
@@ -28,7 +36,8 @@ def scenario():
 def test_a_leg_to_a_displaced_place_is_kept_with_its_target(scenario):
     legs = mut.DisplacedLegs(scenario, LearnedTargets())
     legs.add(go("pantry"), report(), PlaceMismatch("pantry", 0.25), LearnedTargets())
-    learned = LearnedTargets((("pantry", MAPPED[0] + BY[0], MAPPED[1] + BY[1] + 0.3),), 1)
+    moved = (("pantry", MAPPED[0] + BY[0], MAPPED[1] + BY[1] + 0.3),)
+    learned = LearnedTargets(moved, 1, SensitivitySource.FALLBACK, 0.7)
     legs.add(go("pantry"), report(Outcome.BLOCKED), PlaceMismatch("pantry", 0.5), learned)
     legs.add(go("pantry"), report(), PlaceMismatch("pantry", 0.0), learned)
     first, second, third = legs.entries
@@ -41,10 +50,14 @@ def test_a_leg_to_a_displaced_place_is_kept_with_its_target(scenario):
         "x": MAPPED[0],
         "y": MAPPED[1],
         "distance_to_true_m": pytest.approx(math.hypot(*BY)),
+        "sensitivity": None,
+        "sensitivity_deviation": None,
     }
     assert (second["outcome"], second["mismatch"], second["moved"]) == ("blocked", 0.5, True)
     assert second["distance_to_true_m"] == pytest.approx(0.3)
+    assert (second["sensitivity"], second["sensitivity_deviation"]) == ("fallback", 0.7)
     assert (third["mismatch"], third["moved"]) == (0.0, False)
+    assert (third["sensitivity"], third["sensitivity_deviation"]) == (None, None)
 
 
 def test_what_was_learned_in_earlier_episodes_is_no_move(scenario):

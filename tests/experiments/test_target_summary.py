@@ -32,8 +32,23 @@ def test_updates_are_counted_until_a_leg_stops_without_mismatch():
             "max_updates": 2,
             "median_final_distance_m": pytest.approx(0.2),
             "max_final_distance_m": 0.3,
+            "sensitivities": {},  # As of a file in which legs do not tell it.
+            "median_sensitivity_deviation": None,
+            "max_sensitivity_deviation": None,
         }
     }
+
+
+def test_it_is_counted_what_updates_went_through():
+    through = [("simulated", 0.01), ("simulated", 0.04), ("fallback", 0.9), ("fallback", None), ("identity", None)]
+    legs = [
+        {**leg("pantry", 0.5, True, 0.3), "sensitivity": source, "sensitivity_deviation": deviation}
+        for source, deviation in through
+    ]
+    unmoved = {**leg("pantry", 0.0, False, 0.3), "sensitivity": None, "sensitivity_deviation": None}
+    figures = mut.target_figures([run([*legs, unmoved])])["pantry"]
+    assert figures["sensitivities"] == {"fallback": 2, "identity": 1, "simulated": 2}
+    assert (figures["median_sensitivity_deviation"], figures["max_sensitivity_deviation"]) == (0.04, 0.9)
 
 
 def test_legs_that_moved_nothing_are_no_updates():

@@ -33,6 +33,14 @@ def test_the_papers_places_are_displaced_and_their_targets_learned(condition, ev
     assert (control.learned_targets, control.target_evidence, control.learned_dynamics) == (True, evidence, dynamics)
 
 
+def test_the_identity_is_the_full_system_but_for_the_sensitivity():
+    full, identity = scenario("full", seed=3), scenario("identity", seed=3)
+    assert full.control.target_sensitivity == Scenario().control.target_sensitivity == "simulated"
+    assert identity.control.target_sensitivity == "identity"
+    identity.control.target_sensitivity = "simulated"
+    assert identity == full
+
+
 def test_the_outer_loop_alone_learns_what_the_patient_wants_in_the_same_ward():
     learning, fixed = scenario("full", seed=3), scenario("outer_loop_only", seed=3)
     assert not fixed.control.learned_targets

@@ -262,13 +262,3 @@ def test_all_missing_atoms_come_true_at_once():
         state = estimator.update(state, "pantry", mut.TargetEvidence(missing(reached), None, np.eye(2)))
         reached = np.array(estimator.target(state, "pantry"))
     assert all(atom.error == 0.0 for atom in missing(reached))
-
-
-@pytest.mark.parametrize("sensitivity", [np.diag([0.9, 1.2]), np.array([[1.0, 0.3], [-0.2, 0.8]])])
-def test_a_sensitivity_of_a_leg_that_stops_is_believed(sensitivity):
-    np.testing.assert_array_equal(mut.plausible_sensitivity(sensitivity), sensitivity)
-
-
-@pytest.mark.parametrize("wrong", [None, np.zeros((2, 2)), np.diag([1.0, 3.0]), np.full((2, 2), np.nan)])
-def test_for_one_that_it_cannot_have_the_target_itself_stands_in(wrong):
-    np.testing.assert_array_equal(mut.plausible_sensitivity(wrong), np.eye(2))

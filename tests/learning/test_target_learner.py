@@ -22,6 +22,7 @@ from mala_drake.messages import (
     Outcome,
     PlaceMismatch,
     Preferences,
+    SensitivitySource,
     Shape,
 )
 
@@ -41,12 +42,17 @@ def move(sequence, place="pantry"):
 class Bench:
     """A learner on a simulator, with handles to its inputs and a record of the legs that it had simulated."""
 
-    def __init__(self, *, geometric=False, error=None):
+    def __init__(self, *, geometric=False, error=None, simulated=((1.0, 0.0), (0.0, 1.0)), identity=False):
         self.legs = []
         self._error = error
+        self._simulated = np.array(simulated)
         self.learner = TargetEstimator(NOMINAL)
         self.system = mut.TargetLearner(
-            learner=self.learner, yaws=YAWS, sensitivity=self._sensitivity, mapped=(), geometric=geometric
+            learner=self.learner,
+            yaws=YAWS,
+            sensitivity=None if identity else self._sensitivity,
+            mapped=(),
+            geometric=geometric,
         )
         self.simulator = Simulator(self.system)
         self.context = self.simulator.get_mutable_context()
@@ -69,7 +75,7 @@ class Bench:
         self.legs.append(leg)
         if self._error:
             raise RuntimeError(self._error)
-        return np.eye(2)
+        return self._simulated
 
     def send(self, **messages):
         for name, message in messages.items():
@@ -168,6 +174,7 @@ def test_what_is_seen_of_the_place_counts_wherever_a_leg_has_failed():
     ((_, x, y),) = bench.send(place_mismatch=PlaceMismatch("pantry", 0.4, (-0.25, 0.0), (2.0, 1.0))).tick().targets
     assert (x, y) == pytest.approx((-3.0, 16.5), abs=0.1)
     assert not bench.legs
+    assert bench.tick().sensitivity is SensitivitySource.NOT_NEEDED
     assert Bench(geometric=True).drive(1, outcome=Outcome.SOLVER_FAILURE) == LearnedTargets()
 
 
@@ -222,7 +229,42 @@ def test_another_places_mismatch_teaches_nothing():
 
 def test_of_a_leg_without_a_sensitivity_the_end_is_where_the_target_was():
     bench = Bench(error="has no derivative")
-    assert bench.drive(1) == Bench().drive(1)
+    assert bench.drive(1).targets == Bench().drive(1).targets
+
+
+@pytest.mark.parametrize("geometric", [False, True])
+def test_an_update_tells_the_sensitivity_that_it_went_through(geometric):
+    told = Bench(simulated=((1.0, 0.0), (0.0, 1.3)), geometric=geometric).drive(1)
+    assert (told.sensitivity, told.deviation) == (SensitivitySource.SIMULATED, pytest.approx(0.3))
+    for bench, deviation in ((Bench(error="fails"), None), (Bench(simulated=((0.2, 0.0), (0.0, 1.0))), 0.8)):
+        told = bench.drive(1)
+        assert (told.sensitivity, told.deviation) == (SensitivitySource.FALLBACK, deviation)
+
+
+def test_it_is_told_until_the_next_update_and_not_beyond_the_episode():
+    bench = Bench(simulated=((1.0, 0.0), (0.0, 1.3)))
+    told = bench.drive(1)
+    assert bench.drive(2, AT_PANTRY) == told
+    later = Bench()
+    later.system.set_learner_state(later.context, bench.system.learner_state(bench.context), episode=1)
+    assert later.tick().sensitivity is SensitivitySource.NONE
+    assert later.tick().deviation is None
+
+
+def test_reach_is_learned_through_the_sensitivity_as_well():
+    bench = Bench(simulated=((1.0, 0.0), (0.0, 0.8)))
+    assert bench.drive(1, AT_PANTRY).sensitivity is SensitivitySource.NONE
+    told = bench.work(2, SHORT)
+    assert (told.sensitivity, told.deviation) == (SensitivitySource.SIMULATED, pytest.approx(0.2))
+
+
+def test_with_the_identity_no_leg_is_simulated_and_the_end_moves_as_the_target():
+    bench = Bench(identity=True)
+    told = bench.drive(1)
+    assert told.targets == Bench().drive(1).targets
+    assert told.targets != Bench(simulated=((1.4, 0.0), (0.0, 1.0))).drive(1).targets
+    assert (told.sensitivity, told.deviation) == (SensitivitySource.IDENTITY, None)
+    assert not bench.legs
 
 
 def test_targets_stay_clear_of_what_is_seen():
@@ -236,5 +278,5 @@ def test_what_was_learned_goes_on_in_a_fresh_context():
     learned = bench.drive(5)
     later = Bench()
     later.system.set_learner_state(later.context, bench.system.learner_state(bench.context), episode=1)
-    assert later.tick() == learned
+    assert later.tick().targets == learned.targets
     assert later.drive(1).updates == 2  # Actions are counted anew in each episode.

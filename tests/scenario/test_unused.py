@@ -28,6 +28,7 @@ GRADIENT = "learner.name: projected_gradient or reference_gradient"
         ("control: {solver: snopt, sqp_iterations: 1}", "control.sqp_iterations: 1", "control.solver: rti"),
         ("control: {solver: ipopt, qp_solver: osqp}", "control.qp_solver: osqp", "control.solver: rti"),
         ("control: {target_evidence: geometric}", "control.target_evidence: geometric", "learned_targets: true"),
+        ("control: {target_sensitivity: identity}", "control.target_sensitivity: identity", "learned_targets: true"),
         (
             "control: {translation_rate: 0.01, learned_weights: true}",
             "control.translation_rate: 0.01",

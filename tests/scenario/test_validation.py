@@ -140,6 +140,7 @@ def test_no_number_may_be_negative(prefix, name):
         ),
         ("world: {displaced_places: [{place: supply_A, dx: 40}]}", ["world.displaced_places: supply_A at (54.00"]),
         ("control: {target_evidence: hearsay}", ["control.target_evidence: 'hearsay'", "fuzzy, geometric"]),
+        ("control: {target_sensitivity: none}", ["control.target_sensitivity: 'none'", "simulated, identity"]),
         ("ward: nowhere.ward.yaml", ["ward", "nowhere.ward.yaml", "path of a ward map"]),
         ("robto: {}", ["robto: unknown key", "robot"]),
     ],
