@@ -43,11 +43,15 @@ def make_control_learners(
     if control.learned_targets:
         learners["target_learner"] = _target_learner(control, ward, guide, congestion)
     if control.learned_dynamics:
-        pose_noise = max(scenario.robot.position_noise, scenario.robot.yaw_noise)
-        learners["dynamics_learner"] = DynamicsLearner(learner=DynamicsEstimator(pose_noise=pose_noise))
+        learners["dynamics_learner"] = DynamicsLearner(learner=dynamics_estimator(scenario))
     if control.learned_weights or control.learned_translation:
         learners["weight_learner"] = _weight_learner(control, ward, guide, congestion)
     return learners
+
+
+def dynamics_estimator(scenario: Scenario) -> DynamicsEstimator:
+    """What estimates the coefficients of the controller's model."""
+    return DynamicsEstimator(pose_noise=max(scenario.robot.position_noise, scenario.robot.yaw_noise))
 
 
 def _target_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> TargetLearner:

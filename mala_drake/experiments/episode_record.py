@@ -22,6 +22,7 @@ _NOT_WRITTEN = ("leg_outcomes",)  # For who watches a run; in the file, `failure
 _NOT_WRITTEN_IF_NONE = (
     "mpc_not_converged",
     "learned_dynamics",
+    "dynamics_errors",
     "learned_weights",
     "learned_translation",
     "executed_actions",
@@ -37,8 +38,10 @@ class EpisodeRecord:
     among the failures.
 
     `learned_dynamics` has each learned coefficient of the controller's model with its standard deviation, at the end of
-    the episode, `learned_weights` the factors of its weights by place (position, yaw, velocity, control), and
-    `learned_translation` the gains from preferences to its weights; they are not written where none are learned.
+    the episode, and `dynamics_errors` the root mean square errors of v_x, v_y (m/s) and the yaw rate (rad/s) a tick
+    ahead, of that model as it was in each tick (`learned`) and of the nominal one (`nominal`). `learned_weights` has
+    the factors of the controller's weights by place (position, yaw, velocity, control), and `learned_translation` the
+    gains from preferences to its weights. They are not written where none are learned.
     `executed_actions` has an entry an action that has ended, in order: `action`, `outcome`, `external_reward`,
     `closed_loop_cost`, `state_mismatch` and `cost_mismatch`, which `ActionMeter` defines; it is None in what earlier
     versions have written. Clearance and collisions are taken at the plant step; `terminal_errors_m` and the like have
@@ -77,6 +80,7 @@ class EpisodeRecord:
     battery_end: float
     mpc_not_converged: int | None = None
     learned_dynamics: dict[str, list[float]] | None = None
+    dynamics_errors: dict[str, list[float]] | None = None
     learned_weights: dict[str, list[float]] | None = None
     learned_translation: list[list[float]] | None = None
     executed_actions: list[dict[str, Any]] | None = None

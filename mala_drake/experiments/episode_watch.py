@@ -8,8 +8,10 @@ from typing import Any
 from pydrake.systems.framework import Context, Diagram
 
 from mala_drake.control.parameters import DynamicsParameters
+from mala_drake.control_learners import dynamics_estimator
 from mala_drake.experiments.displaced_legs import DisplacedLegs
 from mala_drake.experiments.episode_record import EpisodeRecord, by_criterion, plan_variant, timing
+from mala_drake.experiments.model_errors import ModelErrors
 from mala_drake.learning.convergence import preference_distance
 from mala_drake.messages import (
     Action,
@@ -52,6 +54,8 @@ class EpisodeWatch:
         self._legs: list[ActionReport] = []
         self._out_of_reach = 0  # Sequence of the last action whose things were.
         self._displaced_legs = DisplacedLegs(scenario, self._learned_targets())
+        learns_dynamics = station.HasSubsystemNamed("dynamics_learner")
+        self._model_errors = ModelErrors(dynamics_estimator(scenario)) if learns_dynamics else None
         self._before: Preferences = self._read("preference_learner", "preferences")
         self._charge_before = self._charge()
 
@@ -100,6 +104,7 @@ class EpisodeWatch:
         evaluation: ActionEvaluation = self._read("action_meter", "action_evaluation")
         if evaluation.action.sequence > (self._evaluations[-1].action.sequence if self._evaluations else 0):
             self._evaluations.append(evaluation)
+        self._look_at_model()
         return news
 
     def _look_at_reach(self) -> None:
@@ -108,6 +113,14 @@ class EpisodeWatch:
             self._out_of_reach = report.sequence
             mismatch: PlaceMismatch = self._read("fuzzy_grounding", "reach_mismatch")
             self._displaced_legs.add(self._action, report, mismatch, self._learned_targets())
+
+    def _look_at_model(self) -> None:
+        if self._model_errors is not None:
+            self._model_errors.add(
+                self._read("state_estimator", "robot_state"),
+                self._read("mpc_controller", "control"),
+                self._read("dynamics_learner", "learned_dynamics"),
+            )
 
     def record(self, *, wall_seconds: float, cpu_seconds: float) -> EpisodeRecord:
         """The record of the episode, failed for lack of time when it has not finished."""
@@ -150,6 +163,7 @@ class EpisodeWatch:
             battery_start=self._charge_before,
             battery_end=self._charge(),
             learned_dynamics=self._learned_dynamics(),
+            dynamics_errors=None if self._model_errors is None else self._model_errors.root_mean_squares(),
             learned_weights=self._learned_factors(),
             learned_translation=self._learned_gains(),
             executed_actions=[_entry(evaluation) for evaluation in self._evaluations],
@@ -180,7 +194,7 @@ class EpisodeWatch:
 
     def _learned_dynamics(self) -> dict[str, list[float]] | None:
         """Estimate and standard deviation by coefficient, if the station has a learner of them."""
-        if not self._station.HasSubsystemNamed("dynamics_learner"):
+        if self._model_errors is None:
             return None
         learned: LearnedDynamics = self._read("dynamics_learner", "learned_dynamics")
         names = [item.name for item in fields(DynamicsParameters)]

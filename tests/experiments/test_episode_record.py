@@ -65,10 +65,13 @@ def test_the_keys_are_the_agreed_ones_and_no_others(episode_record):
 
 
 def test_learned_dynamics_are_written_where_they_are_learned(episode_record):
-    learned = {"yaw_coupling": [0.31, 0.01]}
-    written = strict(episode_record(learned_dynamics=learned).to_json())
-    assert sorted(written) == sorted([*KEYS, "learned_dynamics"])
-    assert written["learned_dynamics"] == learned
+    learned = {
+        "learned_dynamics": {"yaw_coupling": [0.31, 0.01]},
+        "dynamics_errors": {"nominal": [0.004, 0.002, 0.01], "learned": [0.002, 0.001, 0.002]},
+    }
+    written = strict(episode_record(**learned).to_json())
+    assert sorted(written) == sorted([*KEYS, *learned])
+    assert {name: written[name] for name in learned} == learned
 
 
 def test_learned_weights_are_written_where_they_are_learned(episode_record):

@@ -9,9 +9,10 @@ from pydrake.systems.analysis import Simulator
 from mala_drake.clock import TICK
 from mala_drake.experiments import episode_watch as mut
 from mala_drake.experiments.episode import Carried, simulate_episode
+from mala_drake.learning.dynamics_estimator import DynamicsEstimator, Transition
 from mala_drake.messages import Action, ActionKind
 from mala_drake.scenario import Scenario
-from mala_drake.station import MakeCareStation, StartEpisode
+from mala_drake.station import MakeCareStation, StartEpisode, learner_states_of
 from mala_drake.ward.features import FEATURE_SCALES
 
 SECONDS = 6.0
@@ -61,6 +62,41 @@ def test_the_rewards_of_the_actions_add_up_to_the_cost_of_the_episode():
     assert sum(costs) == pytest.approx(weights @ list(record.features.values()), abs=1.5 * ticks)
     predicted = [cost - entry["cost_mismatch"] for cost, entry in zip(costs, record.executed_actions, strict=True)]
     assert sum(predicted) == pytest.approx(weights @ list(record.predicted_features.values()))
+
+
+def test_the_errors_of_the_model_are_those_of_the_samples_that_it_is_learned_from():
+    scenario = Scenario(episodes=1)
+    scenario.control.learned_dynamics = True
+    station = MakeCareStation(scenario)
+    context = station.CreateDefaultContext()
+    StartEpisode(station, context, episode=0)
+    simulator = Simulator(station, context)
+    simulator.Initialize()
+    watch = mut.EpisodeWatch(station, context, scenario, 0)
+    states, controls = [], []
+    for tick in range(1, round(2 * SECONDS / TICK) + 1):
+        simulator.AdvanceTo(tick * TICK)
+        watch.look()
+        for system, port, log in (("state_estimator", "robot_state", states), ("mpc_controller", "control", controls)):
+            source = station.GetSubsystemByName(system)
+            log.append(source.GetOutputPort(port).Eval(source.GetMyContextFromRoot(context)).copy())
+    learner = DynamicsEstimator()
+    learned, errors = learner.initial_state(), []
+    for sample in map(Transition, states, controls, states[1:]):
+        if learner.describes(sample):
+            errors.append((sample.after - learner.prediction(sample, learner.coefficients(learned))[0])[3:])
+        learned = learner.update(learned, sample)
+    told = learner_states_of(station, context)["dynamics_learner"]
+    assert np.array_equal(told, learned)
+    record = watch.record(wall_seconds=0.0, cpu_seconds=0.0)
+    assert len(errors) > 30
+    assert record.dynamics_errors["learned"] == pytest.approx(np.sqrt(np.mean(np.square(errors), axis=0)))
+    assert record.dynamics_errors["learned"][2] < 0.5 * record.dynamics_errors["nominal"][2]
+
+
+def test_where_no_model_is_learned_none_has_errors(station):
+    _, watch, *_ = state_after(station, watched=True)
+    assert watch.record(wall_seconds=0.0, cpu_seconds=0.0).dynamics_errors is None
 
 
 def test_an_episode_cut_short_is_a_failure_with_what_was_measured_so_far(station):
