@@ -10,8 +10,11 @@ from mala_drake.experiments.episode_record import check_writable
 from mala_drake.reporting.figures.bound import bound_picture
 from mala_drake.reporting.figures.conditions import condition_picture
 from mala_drake.reporting.figures.distances import distance_pictures
+from mala_drake.reporting.figures.dynamics import dynamics_picture
 from mala_drake.reporting.figures.features import feature_picture
 from mala_drake.reporting.figures.floor_plan import floor_plan_pictures
+from mala_drake.reporting.figures.mismatches import mismatch_picture
+from mala_drake.reporting.figures.model_errors import model_error_picture
 from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.plans import meal_picture, variant_picture
 from mala_drake.reporting.figures.prediction import prediction_picture
@@ -19,8 +22,12 @@ from mala_drake.reporting.figures.style import styled
 from mala_drake.reporting.figures.target_distances import target_distance_picture
 from mala_drake.reporting.figures.target_map import target_map_pictures
 from mala_drake.reporting.figures.task_graphs import task_graph_pictures
+from mala_drake.reporting.figures.translation import translation_picture
+from mala_drake.reporting.figures.weight_factors import factor_picture
 from mala_drake.reporting.figures.weights import final_weights_picture, trajectory_picture
 from mala_drake.reporting.findings import headline, learning_sentences, plan_sentences, problems
+from mala_drake.reporting.inner_loop_findings import inner_loop_sentences
+from mala_drake.reporting.inner_loop_tables import action_table, dynamics_table
 from mala_drake.reporting.report_page import Section, report_page
 from mala_drake.reporting.result_tables import condition_table, convergence_table, execution_table, timing_table
 from mala_drake.reporting.results import Results, load_results
@@ -108,12 +115,25 @@ def _sections(results: Results, ward: Ward) -> Iterator[Section]:
             *prediction_picture(results),
         ),
     )
+    yield Section("inner_loop", "Inner loop", inner_loop_sentences(results), tuple(_inner_loop(results)))
     yield Section("tasks", "Tasks", (), tuple(task_graph_pictures(ward)))
     table = condition_table(results)
     if table:
         yield Section("conditions", "Conditions", (), (*condition_picture(results), table))
     times = timing_table(results)
     yield Section("execution", "Execution", (), (execution_table(results), *([times] if times else [])))
+
+
+def _inner_loop(results: Results) -> Iterator[Picture | Table]:
+    """What became of single actions, and what the controller learned from them."""
+    actions, dynamics = action_table(results), dynamics_table(results)
+    yield from mismatch_picture(results)
+    yield from [actions] if actions else []
+    yield from dynamics_picture(results)
+    yield from [dynamics] if dynamics else []
+    yield from model_error_picture(results)
+    yield from factor_picture(results)
+    yield from translation_picture(results)
 
 
 def _lead(results: Results) -> str:

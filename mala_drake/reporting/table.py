@@ -27,6 +27,7 @@ _LATEX = str.maketrans(
         "–": "--",
         "→": r"$\rightarrow$",
         "×": r"$\times$",
+        "ψ": r"$\psi$",
     }
 )
 

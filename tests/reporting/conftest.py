@@ -12,6 +12,7 @@ import pytest
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder, ConstantVectorSource, Gain
 
+from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION
 from mala_drake.experiments.episode_record import EpisodeFile, EpisodeRecord, by_criterion
 from mala_drake.experiments.experiment import Experiment
 from mala_drake.learning.convergence import preference_distance
@@ -165,6 +166,65 @@ def _simulate_results(
 def simulate_results() -> Callable[..., Path]:
     """Writes the results of an experiment without the physics: real ratings, real learner, features from a table."""
     return _simulate_results
+
+
+_INNER_ACTIONS = {
+    "(go_to_pharmacy_north robot1 home)": (-0.12, 40.0, 0.0, 0.002),
+    "(collect_med_antibiotic robot1 pharmacy_north)": (-0.03, None, 0.0, 0.0001),
+    "(approach_left_to_bed robot1 pharmacy_north)": (-0.15, 60.0, 0.0, -0.006),
+    "(deliver_on_bedside_table_left robot1)": (-0.05, None, 1.0, 0.0),
+}
+"""By action: R^e, R^o, E^psi in an episode with another item than asked for, E^C in the first episode."""
+
+
+def _with_actions(record, *, wrong_items=()):
+    """A record of four actions, whose cost mismatch halves from episode to episode."""
+    entries = [
+        {
+            "action": action,
+            "outcome": "success",
+            "external_reward": reward,
+            "closed_loop_cost": cost,
+            "state_mismatch": state if record.episode in wrong_items else 0.0,
+            "cost_mismatch": mismatch / 2**record.episode,
+        }
+        for action, (reward, cost, state, mismatch) in _INNER_ACTIONS.items()
+    ]
+    return replace(record, executed_actions=entries)
+
+
+def _with_learned_control(record):
+    """A record in which the controller has learned everything that it can, a little more in each episode."""
+    step = 1 + record.episode
+    coefficients = {
+        "lateral_damping": 5.0 + step,
+        "lateral_coupling": -0.02 * (5.0 + step),
+        "yaw_coupling": 0.35,
+        "propulsion_gain": 0.955,
+        "brake_gain": 1.0,
+        "yaw_gain": 0.95 + 0.001 * record.seed,
+    }
+    gains = DEFAULT_TRANSLATION.gains
+    gains[2, 4] += 0.01 * step
+    return replace(
+        _with_actions(record),
+        learned_dynamics={name: [value, 0.02 / step] for name, value in coefficients.items()},
+        dynamics_errors={"nominal": [0.004, 0.002, 0.01], "learned": [0.002, 0.001, 0.01 / (4 * step)]},
+        learned_weights={"patient_bed_left": [1.0, 1.0, 2.0**step, 0.5**step]} if record.episode else {},
+        learned_translation=gains.tolist() if record.episode else [],
+    )
+
+
+@pytest.fixture(scope="session")
+def with_actions() -> Callable[..., EpisodeRecord]:
+    """Gives a record executed actions; in the episodes `wrong_items` the last one has surprised the robot."""
+    return _with_actions
+
+
+@pytest.fixture(scope="session")
+def with_learned_control() -> Callable[[EpisodeRecord], EpisodeRecord]:
+    """Gives a record executed actions and a controller that learns."""
+    return _with_learned_control
 
 
 DISPLACED = {"pantry": (-0.5, 1.9), "patient_bed_left": (-1.06, 1.06)}

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from matplotlib.image import imread
 import mala_drake
 from mala_drake.errors import BadInput
 from mala_drake.reporting import report as mut
+from mala_drake.scenario import Scenario
 
 LOADS = {"src", "href", "xlink:href", "srcset", "data", "action", "poster"}
 EMPTY = {"meta", "link", "br", "img", "hr", "input"}
@@ -163,6 +165,31 @@ def test_displaced_targets_have_a_section_of_their_own(tmp_path, simulate_target
     assert "places that are not where the map says" in text
     assert "4/4displaced places found" in text
     assert "Under outer loop only no target ever moves." in text
+
+
+def test_what_single_actions_and_the_controller_came_to_has_a_section_of_its_own(
+    tmp_path, simulate_results, with_learned_control
+):
+    folder = simulate_results(tmp_path, profiles=("speed_oriented",), episodes=3, change=with_learned_control)
+    (folder / "summary.json").write_text(json.dumps({"scenario": asdict(Scenario())}))
+    written = mut.write_report(folder)
+    names = {path.name for path in written}
+    pictures = ("mismatches", "dynamics", "model_errors", "weight_factors", "translation")
+    assert {f"{name}.{suffix}" for name in pictures for suffix in ("png", "pdf")} <= names
+    assert {"actions.md", "actions.tex", "dynamics.md", "dynamics.tex"} <= names
+    for path in written:
+        if path.stem in pictures and path.suffix == ".png":
+            pixels = imread(path)[:, :, :3]
+            assert 0.01 < np.mean(np.abs(pixels - pixels[0, 0]).max(axis=2) > 0.05) < 0.95, path.name
+    page = written[0].read_text(encoding="utf-8")
+    assert 'href="#inner_loop"' in page
+    text = Page(page).text
+    assert "not the patient's own rating" in text
+    assert "The controller's model becomes the robot's" in text
+
+
+def test_results_of_earlier_versions_have_no_such_section(written):
+    assert "inner_loop" not in written[0].read_text(encoding="utf-8")
 
 
 def test_no_results_are_one_line(tmp_path):

@@ -19,7 +19,7 @@ _LINE_HEIGHT = 1.25  # Of a label, in its own type size.
 
 def episode_locator() -> Locator:
     """Few ticks at whole, round numbers of episodes."""
-    return MaxNLocator(5, integer=True, steps=[1, 2, 5, 10])
+    return MaxNLocator(5, integer=True, steps=[1, 2, 5, 10], min_n_ticks=1)
 
 
 def aligned(series: Iterable[Sequence[float]]) -> NDArray[np.float64]:
