@@ -51,3 +51,8 @@ def test_who_simulates_legs_has_a_solver_of_its_own_that_is_as_the_controllers(m
     control = {"solver": solver, "tolerance": 1e-3}
     make(learned_targets=True, learned_weights=True, **control)
     assert made == [(solver, ControlConfig(**control).solver_options)] * 2
+
+
+def test_targets_that_are_learned_through_the_identity_need_no_simulated_legs(make, monkeypatch):
+    monkeypatch.setattr(mut, "MakeSolver", None)
+    assert list(make(learned_targets=True, target_sensitivity="identity")) == ["target_learner"]
