@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
+from fractions import Fraction
 
 import pytest
 
@@ -48,27 +49,43 @@ def test_one_is_run_by_name_and_all_of_them_without(monkeypatch):
 
 
 def check_planning_rows(rows):
-    assert [row["task"] for row in rows] == ["medication"] * 2 + ["meal"] * 2
-    assert [row["search"] for row in rows] == ["astar", "ucs"] * 2
-    assert [row["replans"] for row in rows] == [3, 1] * 2
+    assert [row["task"] for row in rows] == ["medication"] * 3 + ["meal"] * 3
+    assert [row["search"] for row in rows] == ["astar", "ucs", "value iteration"] * 2
+    assert [row["replans"] for row in rows] == [3, 1, 2] * 2
     for row in rows:
         assert list(row) == list(rows[0])
+        assert row["agreeing"] == row["replans"]
         assert 0.0 < row["median_ms"] <= row["p95_ms"] <= row["max_ms"]
     # The heuristic is what makes it fast: expansions do not depend on the machine.
-    for guided, blind in (rows[:2], rows[2:]):
+    for guided, blind, _ in (rows[:3], rows[3:]):
         assert guided["mean_expansions"] < blind["mean_expansions"]
 
 
-def test_planning_is_measured_by_both_searches(monkeypatch, tmp_path):
+@pytest.fixture
+def few_replans(monkeypatch):
+    monkeypatch.setattr(bench_plan, "_REPLANS", 3)
+    monkeypatch.setattr(bench_plan, "_TABLES", 2)
+
+
+@pytest.fixture
+def street(monkeypatch, tmp_path, few_replans):
     for stem in ("med", "meal"):
         (tmp_path / f"domain_{stem}.pddl").write_text(DOMAIN)
         (tmp_path / f"problem_{stem}.pddl").write_text(PROBLEM)
-    monkeypatch.setattr(bench_plan, "_REPLANS", 3)
     monkeypatch.setattr(bench_plan, "domains_folder", lambda: tmp_path)
-    check_planning_rows(bench_plan.bench_plan())
+
+
+def test_planning_is_measured_by_both_searches_and_by_value_iteration(street):
+    rows = bench_plan.bench_plan()
+    check_planning_rows(rows)
+    assert [row["mean_expansions"] for row in rows if row["search"] == "value iteration"] == [len(PLACES)] * 2
+
+
+def test_costs_that_are_not_those_of_the_planner_do_not_agree(street, monkeypatch):
+    monkeypatch.setattr(bench_plan, "_by_table", lambda *_: lambda _: (Fraction(7), 9))
+    assert [row["agreeing"] for row in bench_plan.bench_plan()] == [3, 1, 0] * 2
 
 
 @pytest.mark.slow
-def test_planning_both_tasks_is_measured_by_both_searches(monkeypatch):
-    monkeypatch.setattr(bench_plan, "_REPLANS", 3)
+def test_planning_both_tasks_is_measured_by_both_searches_and_by_value_iteration(few_replans):
     check_planning_rows(bench_plan.bench_plan())
