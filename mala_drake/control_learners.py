@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pydrake.systems.framework import LeafSystem
 
-from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control import OptimalControlProblem
 from mala_drake.control.leg import LegGuide
 from mala_drake.control.sensitivities.cost_sensitivity import CostSensitivity
 from mala_drake.control.sensitivities.leg_cost import LegCost
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.target_sensitivity import TargetSensitivity
+from mala_drake.control.solver_by_horizon import solver_of_kind
 from mala_drake.learning.dynamics_estimator import DynamicsEstimator
 from mala_drake.learning.dynamics_learner import DynamicsLearner
 from mala_drake.learning.target_estimator import TargetEstimator
@@ -80,4 +81,5 @@ def _weight_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congest
 
 def _simulator(control: ControlConfig, guide: LegGuide, congestion: Congestion) -> LegSimulator:
     problem = OptimalControlProblem(horizon=control.horizon)
-    return LegSimulator(problem, MakeSolver(control.solver, problem, **control.solver_options), guide, congestion)
+    solver, shortest = solver_of_kind(control.horizon_kind, control.solver, problem, **control.solver_options)
+    return LegSimulator(problem, solver, guide, congestion, shortest_horizon=shortest)

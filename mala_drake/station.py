@@ -10,10 +10,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder
 
-from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control import OptimalControlProblem
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.mpc_controller import MpcController
-from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, SolverByHorizon
+from mala_drake.control.solver_by_horizon import solver_of_kind
 from mala_drake.control_learners import make_control_learners
 from mala_drake.errors import BadInput
 from mala_drake.grounding.atom_memberships import location_membership, predicate_memberships
@@ -238,8 +238,7 @@ class _StationBuilder:
         )
         control = scenario.control
         problem = OptimalControlProblem(horizon=control.horizon)
-        shrinking = control.horizon_kind == "shrinking"
-        make_solver = SolverByHorizon if shrinking else MakeSolver
+        solver, shortest = solver_of_kind(control.horizon_kind, control.solver, problem, **control.solver_options)
         self._guide = LegGuide(leg_planner(ward), self._congestion, ward.shapes, rules)
         self._controller = self._add(
             "mpc_controller",
@@ -248,8 +247,8 @@ class _StationBuilder:
                 guide=self._guide,
                 congestion=self._congestion,
                 problem=problem,
-                solver=make_solver(control.solver, problem, **control.solver_options),
-                shortest_horizon=SHORTEST_HORIZON if shrinking else None,
+                solver=solver,
+                shortest_horizon=shortest,
             ),
         )
         self._executor = self._add("in_place_executor", InPlaceExecutor(self._true_ward, items=self._kept))

@@ -6,6 +6,8 @@ import pytest
 
 from mala_drake import control_learners as mut
 from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.sensitivities.leg_simulator import LegSimulator
+from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, solver_of_kind
 from mala_drake.scenario import ControlConfig, Scenario
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import leg_planner
@@ -44,15 +46,33 @@ def test_the_learners_are_those_that_the_scenario_wants(make, wanted, names):
     assert list(make(**wanted)) == names
 
 
-@pytest.mark.parametrize("solver", ["rti", "snopt"])
-def test_who_simulates_legs_has_a_solver_of_its_own_that_is_as_the_controllers(make, monkeypatch, solver):
+@pytest.mark.parametrize(("solver", "kind"), [("rti", "receding"), ("snopt", "receding"), ("rti", "shrinking")])
+def test_who_simulates_legs_has_a_solver_of_its_own_that_is_as_the_controllers(make, monkeypatch, solver, kind):
     made = []
-    monkeypatch.setattr(mut, "MakeSolver", lambda name, _, **options: made.append((name, options)))
-    control = {"solver": solver, "tolerance": 1e-3}
+
+    def listen(kind, name, problem, **options):
+        made.append((kind, name, problem.horizon, options))
+        return solver_of_kind(kind, name, problem, **options)
+
+    monkeypatch.setattr(mut, "solver_of_kind", listen)
+    control = {"solver": solver, "tolerance": 1e-3, "horizon": 8, "horizon_kind": kind}
     make(learned_targets=True, learned_weights=True, **control)
-    assert made == [(solver, ControlConfig(**control).solver_options)] * 2
+    assert made == [(kind, solver, 8, ControlConfig(**control).solver_options)] * 2
+
+
+@pytest.mark.parametrize(("kind", "shortest"), [("receding", None), ("shrinking", SHORTEST_HORIZON)])
+def test_legs_are_simulated_with_the_controllers_kind_of_horizon(make, monkeypatch, kind, shortest):
+    simulators = []
+
+    def listen(*arguments, **options):
+        simulators.append(options)
+        return LegSimulator(*arguments, **options)
+
+    monkeypatch.setattr(mut, "LegSimulator", listen)
+    make(learned_targets=True, learned_translation=True, horizon_kind=kind)
+    assert simulators == [{"shortest_horizon": shortest}] * 2
 
 
 def test_targets_that_are_learned_through_the_identity_need_no_simulated_legs(make, monkeypatch):
-    monkeypatch.setattr(mut, "MakeSolver", None)
+    monkeypatch.setattr(mut, "LegSimulator", None)
     assert list(make(learned_targets=True, target_sensitivity="identity")) == ["target_learner"]

@@ -48,6 +48,19 @@ class OptimalControlProblem:
         self.horizon = horizon
         self.period = period
         self.layout = ParameterLayout(horizon, obstacle_slots)
+        self._others: dict[int, OptimalControlProblem] = {}
+
+    def of_horizon(self, horizon: int) -> OptimalControlProblem:
+        """The same problem with another number of stages: itself, or one that is made at its first use and kept.
+
+        Raises:
+            BadInput: the number is not positive.
+        """
+        if horizon == self.horizon:
+            return self
+        if horizon not in self._others:
+            self._others[horizon] = type(self)(horizon=horizon, period=self.period, obstacle_slots=self.layout.slots)
+        return self._others[horizon]
 
     @cached_property
     def expressions(self) -> ShootingExpressions:

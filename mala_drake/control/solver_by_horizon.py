@@ -14,6 +14,25 @@ SHORTEST_HORIZON = 5
 """Stages: a second, in which the robot can still answer to what has pushed it from its pose."""
 
 
+def solver_of_kind(
+    horizon_kind: str, name: str, problem: OptimalControlProblem, **options: object
+) -> tuple[Solver, int | None]:
+    """The solver of who drives legs, and the least number of stages that its horizon shrinks to.
+
+    Args:
+        horizon_kind: "shrinking", to the end of a leg, or else always the problem's, with None for the latter.
+        name: of the solver, as `MakeSolver` takes it.
+        problem: with the longest horizon.
+        **options: of the solver.
+
+    Raises:
+        BadInput: no solver has this name.
+    """
+    if horizon_kind == "shrinking":
+        return SolverByHorizon(name, problem, **options), SHORTEST_HORIZON
+    return MakeSolver(name, problem, **options), None
+
+
 class SolverByHorizon:
     """`Solver` whose parameters may describe any horizon: one problem and one solver for each that occurs.
 
@@ -41,9 +60,7 @@ class SolverByHorizon:
         """
         horizon = parameters.horizon
         if horizon not in self._solvers:
-            size = self._problem
-            problem = OptimalControlProblem(horizon=horizon, period=size.period, obstacle_slots=size.layout.slots)
-            self._solvers[horizon] = MakeSolver(self.name, problem, **self._options)
+            self._solvers[horizon] = MakeSolver(self.name, self._problem.of_horizon(horizon), **self._options)
         if warm_start is not None:
             controls = np.asarray(warm_start, dtype=float)
             warm_start = controls[np.minimum(np.arange(horizon), len(controls) - 1)]

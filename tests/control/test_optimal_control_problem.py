@@ -143,3 +143,13 @@ def test_parameters_of_another_horizon_are_refused(parameters_toward):
 def test_a_problem_without_size_is_refused(sizes):
     with pytest.raises(BadInput, match="positive"):
         mut.OptimalControlProblem(**sizes)
+
+
+def test_another_horizon_is_the_same_problem_otherwise():
+    problem = mut.OptimalControlProblem(horizon=6, period=0.1, obstacle_slots=3)
+    assert problem.of_horizon(6) is problem
+    shorter = problem.of_horizon(4)
+    assert (shorter.horizon, shorter.period, shorter.layout.slots) == (4, 0.1, 3)
+    assert problem.of_horizon(4) is shorter
+    with pytest.raises(BadInput, match="horizon"):
+        problem.of_horizon(0)

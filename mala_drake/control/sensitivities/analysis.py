@@ -50,9 +50,20 @@ class SensitivityAnalysis:
             barrier: nu, in units of the cost.
         """
         self.columns = Columns(problem.layout)
+        self._problem = problem
+        self._others: dict[int, SensitivityAnalysis] = {}
         self._interior_point = InteriorPoint(problem, barrier=barrier)
         self._terms = ParameterTerms(self._interior_point.functions)
         self._kinks = KinkDistances(self._interior_point.functions)
+
+    def of_horizon(self, horizon: int) -> SensitivityAnalysis:
+        """That of the same problem with another number of stages: itself, or one made at its first use and kept."""
+        if horizon == self._problem.horizon:
+            return self
+        if horizon not in self._others:
+            problem = self._problem.of_horizon(horizon)
+            self._others[horizon] = SensitivityAnalysis(problem, barrier=self._interior_point.barrier)
+        return self._others[horizon]
 
     def polish(self, solution: Solution, initial_state: ArrayLike, parameters: MpcParameters) -> KktPoint:
         """The point of the central path next to a solution of any solver; see `InteriorPoint.polish`.

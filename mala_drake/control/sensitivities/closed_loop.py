@@ -68,7 +68,8 @@ class ClosedLoop:
 
         Args:
             analysis: of the problem that `solver` solves.
-            solver: finds the solutions that are then carried to the central path.
+            solver: finds the solutions that are then carried to the central path. If the parameters' horizon changes
+                on the way it must take any, see `SolverByHorizon`.
             simulation: f*.
         """
         self._analysis = analysis
@@ -88,13 +89,14 @@ class ClosedLoop:
         """
         state, warm_start = np.array(initial_state, dtype=float), None
         done = []
-        columns = self._analysis.columns
         groups = (*leg.groups, INITIAL_STATE)
         for i in range(steps):
             chosen = leg.at(i, state)
             solution = self._solver.solve(state, chosen.parameters, warm_start)
-            point = self._analysis.polish(solution, state, chosen.parameters)
-            policy = self._analysis.policy(point, groups)
+            analysis = self._analysis.of_horizon(chosen.parameters.horizon)
+            columns = analysis.columns
+            point = analysis.polish(solution, state, chosen.parameters)
+            policy = analysis.policy(point, groups)
             by_state = policy.jacobian[:, columns.slices[INITIAL_STATE]]
             by_parameters = policy.jacobian[:, columns.parameters]
             if chosen.by_state is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -27,12 +28,22 @@ class Columns:
     """
 
     def __init__(self, layout: ParameterLayout) -> None:
+        self._layout = layout
+        self._others: dict[int, Columns] = {}
         start = layout.size
         self.slices = dict(layout.slices)
         for name, size in ((LOWER, CONTROL_SIZE), (UPPER, CONTROL_SIZE), (INITIAL_STATE, STATE_SIZE)):
             self.slices[name] = slice(start, start + size)
             start += size
         self.size = start
+
+    def of_horizon(self, horizon: int) -> Columns:
+        """Those of the same problem with another number of stages; made at their first use and kept."""
+        if horizon == self._layout.horizon:
+            return self
+        if horizon not in self._others:
+            self._others[horizon] = Columns(replace(self._layout, horizon=horizon))
+        return self._others[horizon]
 
     @cached_property
     def parameters(self) -> slice:

@@ -22,7 +22,7 @@ class StepParameters(Message):
     """The parameters of one solve, and how they move with the knobs, a vector of m numbers, and with the state."""
 
     parameters: MpcParameters
-    by_knobs: Vector  # d (columns of the parameters) / d knobs, shape (Columns.parameters, m).
+    by_knobs: Vector  # d (columns of the parameters) / d knobs, shape (Columns.parameters, m), of their own horizon.
     by_state: Vector | None = None  # The same with respect to z_i, shape (.., 6); None where references do not follow.
 
 

@@ -27,18 +27,27 @@ Schedule = Callable[[RecordedLeg, Columns], LegParameters]
 class LegSimulator:
     """Simulates legs in closed loop over the prediction model: action, weights and model are those of the real leg."""
 
-    def __init__(self, problem: OptimalControlProblem, solver: Solver, guide: LegGuide, congestion: Congestion) -> None:
+    def __init__(
+        self,
+        problem: OptimalControlProblem,
+        solver: Solver,
+        guide: LegGuide,
+        congestion: Congestion,
+        *,
+        shortest_horizon: int | None = None,
+    ) -> None:
         """Gives it what a controller has.
 
         Args:
             problem: of the controller.
-            solver: of that problem, with a horizon of the problem's length.
+            solver: of that problem, as the controller's but not the same one.
             guide: decides about legs.
             congestion: limits the speed by zone.
+            shortest_horizon: if given, the horizon shrinks to the end of the leg, see `MpcController`.
         """
         analysis = SensitivityAnalysis(problem)
         self._columns = analysis.columns
-        self._recorder = LegRecorder(problem, solver, guide, congestion)
+        self._recorder = LegRecorder(problem, solver, guide, congestion, shortest_horizon=shortest_horizon)
         self._loop = ClosedLoop(analysis, solver, SimulationModel(period=problem.period))
 
     def __call__(self, driven: DrivenLeg, schedule: Schedule) -> ClosedLoopRun:

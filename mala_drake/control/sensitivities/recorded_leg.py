@@ -1,7 +1,8 @@
 """A leg as the controller drives it, recorded so that it can be driven again with other targets and costs.
 
 The references of a leg follow the robot by rules that are not smooth (the nearest sample of the path, turns on the
-spot). Recorded, they are a schedule by time: what is left between its numbers and the end of the leg is differentiable.
+spot), and so does a horizon that shrinks. Recorded, they are a schedule by time: what is left between its numbers and
+the end of the leg is differentiable.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class RecordedLeg:
     shares: tuple[Vector, ...]  # Of the path behind each reference z_0 ... z_N, from 0 to 1, shape (N + 1,).
 
     def with_knobs(self, knobs: ArrayLike, columns: Columns) -> ScheduledParameters:
-        """The leg's parameters for values of `KNOBS`, with their derivatives."""
+        """The leg's parameters for values of `KNOBS`, with their derivatives; `columns` are the problem's."""
         values = np.asarray(knobs, dtype=float)
         steps = [_step(*pair, values, columns) for pair in zip(self.steps, self.shares, strict=True)]
         return ScheduledParameters(steps, ("terminal", "stage"))
@@ -52,12 +53,21 @@ class RecordedLeg:
 class LegRecorder:
     """Drives legs over the prediction model, as the controller does, until the robot has stopped."""
 
-    def __init__(self, problem: OptimalControlProblem, solver: Solver, guide: LegGuide, congestion: Congestion) -> None:
-        """Gives the recorder what a controller has; the solver is that of `problem`."""
+    def __init__(
+        self,
+        problem: OptimalControlProblem,
+        solver: Solver,
+        guide: LegGuide,
+        congestion: Congestion,
+        *,
+        shortest_horizon: int | None = None,
+    ) -> None:
+        """Gives the recorder what a controller has; see `MpcController`. The solver is that of `problem`."""
         self._problem = problem
         self._solver = solver
         self._guide = guide
         self._congestion = congestion
+        self._shortest_horizon = shortest_horizon
 
     def record(
         self,
@@ -99,6 +109,8 @@ class LegRecorder:
                 horizon=self._problem.horizon,
                 period=self._problem.period,
             )
+            if self._shortest_horizon is not None:
+                reference = reference.until_rest(self._shortest_horizon)
             parameters = make_parameters(
                 style=style,
                 weights=weights,
@@ -123,6 +135,7 @@ class LegRecorder:
 
 def _step(parameters: MpcParameters, shares: Vector, knobs: Vector, columns: Columns) -> StepParameters:
     terminal, stage = parameters.terminal, parameters.stage
+    columns = columns.of_horizon(parameters.horizon)
     offset = np.zeros(STATE_SIZE)
     offset[[StateIndex.X, StateIndex.Y]] = knobs[:2]
     position = np.zeros(STATE_SIZE)

@@ -26,6 +26,7 @@ def weight_schedule(leg: RecordedLeg, logarithms: ArrayLike, columns: Columns) -
 
 def _step(parameters: MpcParameters, logarithms: np.ndarray, columns: Columns) -> StepParameters:
     terminal, stage = parameters.terminal, parameters.stage
+    columns = columns.of_horizon(parameters.horizon)
     on_states, on_controls = np.exp(logarithms[:STATE_SIZE]), np.exp(logarithms[STATE_SIZE:])
     weighted = replace(
         parameters,

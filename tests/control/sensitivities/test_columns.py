@@ -25,6 +25,13 @@ def test_an_unknown_name_is_refused():
         COLUMNS.of(["patience"])
 
 
+def test_another_horizon_has_columns_of_its_own():
+    longer = COLUMNS.of_horizon(4)
+    assert longer.slices == mut.Columns(ParameterLayout(horizon=4, slots=1)).slices
+    assert longer is COLUMNS.of_horizon(4)
+    assert COLUMNS.of_horizon(3) is COLUMNS
+
+
 def test_the_groups_of_pieces():
     assert COLUMNS.groups(["terminal.target", "terminal.weights", "inputs"]) == {"terminal", "inputs"}
     with pytest.raises(BadInput, match="patience"):

@@ -16,6 +16,7 @@ from mala_drake.control.sensitivities.leg_cost import LegCost
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import LegRecorder
 from mala_drake.control.sensitivities.weight_schedule import weight_schedule
+from mala_drake.control.solver_by_horizon import solver_of_kind
 from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION
 from mala_drake.learning.weight_estimator import WeightEstimator
 from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights, Shape
@@ -32,10 +33,12 @@ PRICES = (0.004, 0.5, 0.14, 0.014, 0.08)
 COST = LegCost(bed=Shape("bed", 2.0, 2.2, 0.3, 0.8, 0.4), charge_rate=charge_rate)
 
 
-def tools(problem, rules=None):
+def make(system, problem, rules=None, *, kind="receding"):
+    """Who drives legs, with what a controller has."""
     congestion = Congestion(HALL)
     guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
-    return problem, MakeSolver("rti", problem), guide, congestion
+    solver, shortest = solver_of_kind(kind, "rti", problem)
+    return system(problem, solver, guide, congestion, shortest_horizon=shortest)
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +46,8 @@ def problem():
     return OptimalControlProblem()
 
 
-def gradient(problem, rules=None, *, prices=PRICES, bedsides=("there",), **how):
-    own = mut.CostSensitivity(LegSimulator(*tools(problem, rules)), cost=COST, bedsides=bedsides)
+def gradient(problem, rules=None, *, prices=PRICES, bedsides=("there",), kind="receding", **how):
+    own = mut.CostSensitivity(make(LegSimulator, problem, rules, kind=kind), cost=COST, bedsides=bedsides)
     leg = DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, **how)
     return own(leg, prices=prices)
 
@@ -54,10 +57,10 @@ def nominal(problem):
     return gradient(problem)
 
 
-def assert_differences(found, problem, leg):
+def assert_differences(found, problem, leg, *, kind="receding"):
     """Compares a gradient with central differences of the closed loop's cost, by one entry of each kind."""
     analysis = SensitivityAnalysis(problem)
-    loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))
+    loop = ClosedLoop(analysis, solver_of_kind(kind, "rti", problem)[0], SimulationModel(period=problem.period))
 
     def cost(logarithms):
         schedule = weight_schedule(leg, logarithms, analysis.columns)
@@ -71,8 +74,16 @@ def assert_differences(found, problem, leg):
 
 
 def test_it_is_that_of_differences_of_the_closed_loop(problem, nominal):
-    leg = LegRecorder(*tools(problem)).record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS)
+    leg = make(LegRecorder, problem).record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS)
     assert_differences(nominal, problem, leg)
+
+
+def test_a_horizon_that_shrinks_is_differentiated_as_it_is(problem, nominal):
+    recorder = make(LegRecorder, problem, kind="shrinking")
+    leg = recorder.record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=WEIGHTS)
+    found = gradient(problem, kind="shrinking")
+    assert_differences(found, problem, leg, kind="shrinking")
+    assert np.abs(found - nominal).max() > 0.01 * np.abs(nominal).max()
 
 
 def test_a_common_factor_of_all_weights_changes_next_to_nothing(nominal):
@@ -87,7 +98,7 @@ def test_the_leg_is_driven_as_it_was_with_what_was_learned_then(problem, nominal
     for each in legs:
         assert np.abs(each - nominal).max() > 1e-3 * np.abs(nominal).max()
     style = learned_style(GO, factors, carrying=False)
-    leg = LegRecorder(*tools(problem)).record(np.zeros(6), THERE, HALL.shapes, style=style, weights=WEIGHTS)
+    leg = make(LegRecorder, problem).record(np.zeros(6), THERE, HALL.shapes, style=style, weights=WEIGHTS)
     assert_differences(legs[0], problem, leg)
 
 
@@ -99,7 +110,7 @@ def test_the_approach_error_counts_at_bedsides_alone(problem):
 
 def test_the_mismatch_to_a_wrong_prediction_falls_by_the_learned_weights(problem):
     """In the closed loop over the model as it is driven, with references that follow the robot, not as recorded."""
-    recorder, analysis = LegRecorder(*tools(problem)), SensitivityAnalysis(problem)
+    recorder, analysis = make(LegRecorder, problem), SensitivityAnalysis(problem)
     learner = WeightEstimator(["there"])
     state = learner.initial_state()
     loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))

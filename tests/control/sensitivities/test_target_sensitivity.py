@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 import mala_drake.control.sensitivities.target_sensitivity as mut
-from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control import OptimalControlProblem
 from mala_drake.control.action_parameters import learned_style
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
+from mala_drake.control.solver_by_horizon import solver_of_kind
 from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
@@ -27,10 +28,12 @@ WEIGHTS = (0.2,) * 5
 NOMINAL_ROBOT = LearnedDynamics()
 
 
-def tools(problem, rules=None):
+def make(system, problem, rules=None, *, kind="receding"):
+    """Who drives legs, with what a controller has."""
     congestion = Congestion(HALL)
     guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
-    return problem, MakeSolver("rti", problem), guide, congestion
+    solver, shortest = solver_of_kind(kind, "rti", problem)
+    return system(problem, solver, guide, congestion, shortest_horizon=shortest)
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +41,8 @@ def problem():
     return OptimalControlProblem()
 
 
-def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT, **how):
-    own = mut.TargetSensitivity(LegSimulator(*tools(problem, rules)))
+def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT, kind="receding", **how):
+    own = mut.TargetSensitivity(make(LegSimulator, problem, rules, kind=kind))
     return own(DrivenLeg(GO, (0.0,) * 6, THERE, obstacles=HALL.shapes, preferences=WEIGHTS, dynamics=learned, **how))
 
 
@@ -51,18 +54,23 @@ LOOSE = LearnedWeights((("there", (0.25, 1.0, 4.0, 2.0)),))  # In position, and 
 
 
 @pytest.mark.parametrize(
-    ("learned", "weights"),
-    [(NOMINAL_ROBOT, LearnedWeights()), (LEARNED, LearnedWeights()), (NOMINAL_ROBOT, LOOSE)],
-    ids=["nominal", "learned dynamics", "learned weights"],
+    ("learned", "weights", "kind"),
+    [
+        (NOMINAL_ROBOT, LearnedWeights(), "receding"),
+        (LEARNED, LearnedWeights(), "receding"),
+        (NOMINAL_ROBOT, LOOSE, "receding"),
+        (LEARNED, LOOSE, "shrinking"),
+    ],
+    ids=["nominal", "learned dynamics", "learned weights", "shrinking horizon"],
 )
-def test_it_is_that_of_differences_of_the_closed_loop(problem, learned, weights):
+def test_it_is_that_of_differences_of_the_closed_loop(problem, learned, weights, kind):
     style = learned_style(GO, weights, carrying=False)
     dynamics = DynamicsParameters(*learned.coefficients) if learned.updates else None
-    recorder = LegRecorder(*tools(problem))
+    recorder = make(LegRecorder, problem, kind=kind)
     leg = recorder.record(np.zeros(6), THERE, HALL.shapes, style=style, weights=WEIGHTS, dynamics=dynamics)
     np.testing.assert_array_equal(leg.steps[0].dynamics.vector, (dynamics or DynamicsParameters()).vector)
     analysis = SensitivityAnalysis(problem)
-    loop = ClosedLoop(analysis, MakeSolver("rti", problem), SimulationModel(period=problem.period))
+    loop = ClosedLoop(analysis, solver_of_kind(kind, "rti", problem)[0], SimulationModel(period=problem.period))
     model, size = leg.steps[0].dynamics.vector, 1e-4
 
     def end(knob, step):
@@ -70,7 +78,8 @@ def test_it_is_that_of_differences_of_the_closed_loop(problem, learned, weights)
         return loop.run(leg.initial_state, schedule, model, len(leg.steps)).states[-1, :2]
 
     expected = np.stack([(end(knob, size) - end(knob, -size)) / (2 * size) for knob in range(2)], axis=1)
-    np.testing.assert_allclose(sensitivity(problem, learned=learned, weights=weights), expected, atol=1e-4)
+    found = sensitivity(problem, learned=learned, weights=weights, kind=kind)
+    np.testing.assert_allclose(found, expected, atol=1e-4)
 
 
 def breaking(monkeypatch, at):
