@@ -136,7 +136,12 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
 def _check_control_learners(scenario: Scenario, at: str) -> None:
     """Who learns from simulated legs has to be able to differentiate them as they were driven."""
     control = scenario.control
-    names = [name for name in ("learned_targets", "learned_weights", "learned_translation") if getattr(control, name)]
+    learned = {
+        "learned_targets": control.learned_targets and control.target_sensitivity == "simulated",
+        "learned_weights": control.learned_weights,
+        "learned_translation": control.learned_translation,
+    }
+    names = [name for name, wanted in learned.items() if wanted]
     if names and control.hard_clearance:
         raise BadInput(
             at + "control.hard_clearance", f"true, with {names[0]}", "false: legs are differentiated with the penalty"

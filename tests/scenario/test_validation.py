@@ -152,6 +152,10 @@ def test_a_mistake_in_the_file_is_named(refusal, text, words):
         assert word in line
 
 
+def test_targets_may_be_learned_with_hard_clearance_where_no_leg_is_simulated(load_scenario):
+    load_scenario("control: {hard_clearance: true, learned_targets: true, target_sensitivity: identity}")
+
+
 @pytest.fixture(scope="module")
 def plain_map():
     return (models_folder() / "care_center.ward.yaml").read_text(encoding="utf-8")
