@@ -12,6 +12,16 @@ Four things make it fit for a running robot. Influence is bounded (P. J. Huber, 
 beyond a few standard deviations counts only as that many. The noise is estimated too. What the robot does not excite is
 not learned from, and forgetting acts in the excited direction alone (R. Kulhavy, Automatica 23, 1987), so that driving
 straight blows nothing up. And samples that the model does not describe are left out.
+
+Bounds l and h keep the coefficients those of a model that can be stepped. An estimate that leaves them is replaced by
+the most likely one within (D. Simon, IET Control Theory and Applications 4, 2010),
+
+    p <- argmin (q - p)' P^-1 (q - p), l <= q <= h,  which is  p + P[:, i] (b - p_i) / P[i, i]  for one active bound b.
+
+So whatever is correlated with the coefficient that is held is corrected with it: the slip answers nearly at once, and
+samples tell of k and g little more than g / k. P stays. Around the new p it means the same cost as around the old one,
+but for a multiple of q_i - b, which is zero on the bound. So nothing is lost while the bound holds; that multiple, how
+hard the samples press on it, is forgotten on purpose, so that it neither winds up nor keeps the estimate there.
 """
 
 from __future__ import annotations
@@ -34,6 +44,7 @@ from mala_drake.control.model import (
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.errors import BadInput
 from mala_drake.learning.abstract_learner import AbstractLearner, FloatArray
+from mala_drake.learning.nearest_in_box import nearest_in_box
 from mala_drake.messages import LearnedDynamics
 
 _VELOCITIES = (StateIndex.FORWARD_VELOCITY, StateIndex.LATERAL_VELOCITY, StateIndex.YAW_RATE)
@@ -45,6 +56,7 @@ _COUNTS = slice(_NOISE.stop, _NOISE.stop + len(_VELOCITIES))
 NOMINAL_DEVIATIONS = (3.0, 0.2, 0.3, 0.1, 0.1, 0.1)
 """How far from nominal each coefficient may well be, as a standard deviation, in the order of `DynamicsIndex`."""
 
+# Wheels that hold have an endless k: it is learned up to its bound.
 _LOWEST = np.array([1.0, -1.0, -1.5, 0.6, 0.6, 0.6])
 _HIGHEST = np.array([11.0, 1.0, 1.5, 1.4, 1.4, 1.4])
 
@@ -180,7 +192,11 @@ class DynamicsEstimator(AbstractLearner):
         return state[:DYNAMICS_SIZE].copy()
 
     def deviations(self, state: FloatArray) -> FloatArray:
-        """The standard deviation of each coefficient: (6,)."""
+        """The standard deviation of each coefficient: (6,).
+
+        It is what the samples tell by themselves, near the estimate. Of a coefficient on its bound it does not tell how
+        far beyond the samples would have it.
+        """
         _, covariance, _, _ = _unpacked(state)
         return np.sqrt(np.diag(covariance))
 
@@ -207,10 +223,10 @@ class DynamicsEstimator(AbstractLearner):
         total = believed + noise
         bounded = min(abs(innovation), self._bound * math.sqrt(total))
         coefficients += seen * (math.copysign(bounded, innovation) / total)
-        np.clip(coefficients, _LOWEST, _HIGHEST, out=coefficients)
         # What is beyond the bound tells as little as a measurement whose noise is as much larger.
         weight = bounded / abs(innovation) if innovation else 1.0
         covariance -= np.outer(seen, seen) / (believed + noise / weight)
+        coefficients[:] = nearest_in_box(coefficients, covariance, _LOWEST, _HIGHEST)
         return bounded**2 - believed
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import least_squares, lsq_linear
 
 import mala_drake.learning.dynamics_estimator as mut
 from mala_drake.clock import PLANT_STEP, TICK
@@ -169,6 +170,77 @@ def test_a_change_is_followed():
     loaded = TRUTH * np.array([1.0, 1.0, 1.3, 0.9, 0.9, 0.9])
     learner, state = learned([*log(300), *log(900, seed=3, dynamics=loaded)])
     assert learner.coefficients(state)[2:] == pytest.approx(loaded[2:], rel=0.05)
+
+
+SLIP = -0.02
+"""g / k of the robots below, seconds."""
+
+
+def slipping(samples, damping, *, seed=0, excited=True):
+    """What a robot does whose slip has settled before each sample; unless `excited`, the controls let it settle on."""
+    generator = np.random.default_rng(seed)
+    dynamics = np.array([damping, SLIP * damping, 0.35 * excited, 0.94, 0.98, 0.93])
+    for control in generator.uniform((0.0, 0.0, -1.0), (2.0, 1.0, 1.0), (samples, 3)):
+        before = generator.uniform((-9, -9, -3, 0.5, 0.0, -0.8), (9, 9, 3, 1.4, 0.0, 0.8))
+        before[4] = SLIP * before[3] * before[5]
+        control = control if excited else np.array([1e-6, 0.0, 0.0])
+        yield mut.Transition(
+            before, control, next_state(before, control, dynamics) + NOISE * generator.standard_normal(6)
+        )
+
+
+@pytest.mark.parametrize(("damping", "excited"), [(13.0, True), (7.0, False)])
+def test_the_slip_is_learned_whatever_becomes_of_its_damping(damping, excited):
+    """Of a robot whose damping is beyond the bound, and of one that hardly tells its damping."""
+    learner, state = learned(slipping(2000, damping, excited=excited))
+    coefficients = learner.coefficients(state)
+    assert (coefficients[0] > 10.9) == excited
+    assert coefficients[1] / coefficients[0] == pytest.approx(SLIP, rel=0.05)
+
+
+def test_a_damping_beyond_its_bound_leaves_the_best_coupling_to_that_bound():
+    samples = list(slipping(600, 13.0))
+
+    def errors(coupling):
+        dynamics = np.array([mut._HIGHEST[0], coupling.item(), 0.35, 0.94, 0.98, 0.93])
+        return [t.after[4] - next_state(t.before, t.control, dynamics)[4] for t in samples]
+
+    best = least_squares(errors, [0.0]).x.item()
+    learner, state = learned(samples)
+    assert learner.coefficients(state)[:2] == pytest.approx([mut._HIGHEST[0], best], rel=0.02)
+
+
+@given(st.integers(0, 1000), st.floats(0.4, 1.8), st.floats(0.4, 1.8))
+def test_every_update_is_a_constrained_least_squares(seed, propulsion, brake):
+    """Of what was known and the sample: straight on the model is linear, and both gains are correlated."""
+    learner = mut.DynamicsEstimator(memory=1e9, bound=1e6)
+    generator = np.random.default_rng(seed)
+    state, truth = learner.initial_state(), TRUTH.copy()
+    truth[3:5] = propulsion, brake
+    gains, box = slice(3, 5), (mut._LOWEST[3:5], mut._HIGHEST[3:5])
+    for _ in range(15):
+        push = generator.uniform(0.5, 2.0)
+        control = np.array([push, 0.3 * push + generator.uniform(0.0, 0.4), 0.0])
+        before = np.array([0.0, 0.0, 0.0, generator.uniform(0.7, 1.4), 0.0, 0.0])
+        after = next_state(before, control, truth)
+        after[3] += 3e-3 * generator.standard_normal()
+        known, whitening = state[gains], np.linalg.inv(np.linalg.cholesky(covariance_of(state)[gains, gains]))
+        deviation = np.sqrt(state[27])  # Of the noise.
+        rows = np.vstack((whitening, TICK / deviation * np.array([control[0], -control[1]])))
+        values = np.append(whitening @ known, (after[3] - before[3]) / deviation)
+        state = learner.update(state, mut.Transition(before, control, after))
+        assert state[gains] == pytest.approx(lsq_linear(rows, values, box, method="bvls").x, rel=1e-6)
+    assert learner.updates(state) == 15
+
+
+def test_a_bound_lets_go_when_samples_speak_against_it():
+    learner, state = learned(slipping(600, 13.0))
+    assert learner.coefficients(state)[0] > 10.9
+    for sample in slipping(300, 6.0, seed=1):
+        state = learner.update(state, sample)
+    damping, coupling = learner.coefficients(state)[:2]
+    assert damping < 9.0
+    assert coupling / damping == pytest.approx(SLIP, rel=0.05)
 
 
 def transition(**changes):
