@@ -110,11 +110,11 @@ class WeightLearner(LegLearner):
 
     def _target(self, context: Context, place: str) -> tuple[float, float, float]:
         """The pose that the controller drives to for a place, (0, 0, 0) for one that is not known."""
-        x, y, yaw = self._targets.get(place, (0.0, 0.0, 0.0))
+        pose = self._targets.get(place, (0.0, 0.0, 0.0))
         if not self._learned_targets.HasValue(context):
-            return x, y, yaw
+            return pose
         told: LearnedTargets = self._learned_targets.Eval(context)
-        return next(((tx, ty, yaw) for name, tx, ty in told.targets if name == place), (x, y, yaw))
+        return told.pose(place, pose)
 
     def _weights_told(self, context: Context) -> LearnedWeights:
         return self._learned(context)

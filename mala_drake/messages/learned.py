@@ -60,6 +60,10 @@ class LearnedTargets(Message):
     sensitivity: SensitivitySource = SensitivitySource.NONE
     deviation: float | None = None
 
+    def pose(self, place: str, mapped: tuple[float, float, float]) -> tuple[float, float, float]:
+        """Where a leg to a place is to end, if the map says `mapped`; both (x, y, yaw), and the yaw is the map's."""
+        return next(((x, y, mapped[2]) for name, x, y in self.targets if name == place), mapped)
+
 
 @dataclass(frozen=True, slots=True)
 class LearnedDynamics(Message):
