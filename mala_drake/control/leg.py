@@ -22,7 +22,8 @@ from mala_drake.ward.routes import BODY_RADIUS, Route
 from mala_drake.ward.shapes import ShapeDistances
 
 from .model import StateIndex
-from .reference import Track, needs_turn
+from .optimal_control_problem import OptimalControlProblem
+from .reference import Reference, Track, make_reference, needs_turn
 
 Pose = tuple[float, float, float]
 
@@ -58,6 +59,22 @@ class Leg(Message):
     unmapped: tuple[Shape, ...] = ()
     outcome: Outcome = Outcome.RUNNING
     detail: str = ""
+
+    def reference(
+        self, state: NDArray[np.float64], problem: OptimalControlProblem, shortest_horizon: int | None
+    ) -> Reference:
+        """The reference of the horizon that begins now; the leg has a track.
+
+        Args:
+            state: the robot's state z, shape (6,).
+            problem: that is to be solved.
+            shortest_horizon: if given, the horizon shrinks to the end of the leg, but to no fewer stages.
+        """
+        assert self.track is not None
+        whole = make_reference(
+            self.track, state, self.length, turning=self.turning, horizon=problem.horizon, period=problem.period
+        )
+        return whole if shortest_horizon is None else whole.until_rest(shortest_horizon)
 
 
 def pose_errors(state: NDArray[np.float64], target: Pose) -> tuple[float, float]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -33,10 +32,10 @@ from .action_parameters import DrivingStyle, learned_style, make_parameters
 from .leg import Leg, LegGuide, Pose, pose_errors
 from .model import CONTROL_SIZE, STATE_SIZE, StateIndex
 from .optimal_control_problem import OptimalControlProblem
-from .parameters import DynamicsParameters, StageParameters, TerminalParameters, learned_parameters
-from .reference import make_reference
+from .parameters import DynamicsParameters, TerminalParameters, learned_parameters
 from .solution import Solution
 from .solver import Solver
+from .tracking_cost import stage_cost, terminal_cost
 from .weights_to_costs import DEFAULT_TRANSLATION, CostTranslation, learned_translation
 
 PARKED = (0.0, 2.0, 0.0)
@@ -209,24 +208,13 @@ class MpcController(LeafSystem):
         if pose is None or not self._learned_targets.HasValue(context):
             return pose
         learned: LearnedTargets = self._learned_targets.Eval(context)
-        return next(((x, y, pose[2]) for name, x, y in learned.targets if name == place), pose)
+        return learned.pose(place, pose)
 
     def _solve(self, context: Context, driving: _Driving, leg: Leg, robot_state: NDArray[np.float64]) -> _Driving:
-        assert leg.track is not None
-        reference = make_reference(
-            leg.track,
-            robot_state,
-            leg.length,
-            turning=leg.turning,
-            horizon=self._problem.horizon,
-            period=self._problem.period,
-        )
-        if self._shortest_horizon is not None:
-            reference = reference.until_rest(self._shortest_horizon)
         parameters = make_parameters(
             style=driving.style,
             weights=self._preferences.Eval(context).estimate,
-            reference=reference,
+            reference=leg.reference(robot_state, self._problem, self._shortest_horizon),
             obstacles=self._obstacles.Eval(context).shapes,
             congestion=self._congestion,
             dynamics=self._dynamics(context),
@@ -236,14 +224,14 @@ class MpcController(LeafSystem):
         solution = self._solver.solve(robot_state, parameters, driving.warm_start)
         self.solve_seconds.append(time.perf_counter() - started)
         usable = solution.usable
-        stage_cost = _stage_cost(robot_state, solution.controls[0], parameters.stage) if usable else 0.0
+        step_cost = stage_cost(robot_state, solution.controls[0], parameters.stage) if usable else 0.0
         report = replace(
             driving.report,
             steps=leg.steps,
             solves=driving.report.solves + 1,
             failures=driving.report.failures + (not usable),
             not_converged=driving.report.not_converged + (usable and not solution.success),
-            closed_loop_cost=driving.report.closed_loop_cost + stage_cost,
+            closed_loop_cost=driving.report.closed_loop_cost + step_cost,
         )
         if not usable:
             return self._after_failed_solve(replace(driving, report=report), robot_state, solution)
@@ -286,7 +274,7 @@ class MpcController(LeafSystem):
     def _finish(self, driving: _Driving, robot_state: NDArray[np.float64], outcome: Outcome, detail: str) -> _Driving:
         target = driving.leg.target if driving.leg else self._targets.get(driving.action.place)
         position_error, yaw_error = pose_errors(robot_state, target) if target else (0.0, 0.0)
-        terminal_cost = _terminal_cost(robot_state, target, driving.terminal) if target and driving.terminal else 0.0
+        end_cost = terminal_cost(robot_state, target, driving.terminal) if target and driving.terminal else 0.0
         report = replace(
             driving.report,
             outcome=outcome,
@@ -294,24 +282,7 @@ class MpcController(LeafSystem):
             position_error=position_error,
             yaw_error=yaw_error,
             terminal_speed=abs(float(robot_state[StateIndex.FORWARD_VELOCITY])),
-            closed_loop_cost=driving.report.closed_loop_cost + terminal_cost,
+            closed_loop_cost=driving.report.closed_loop_cost + end_cost,
             detail=detail,
         )
         return replace(driving, report=report, control=PARKED, warm_start=None, predicted=PredictedTrajectory())
-
-
-def _stage_cost(state: NDArray[np.float64], control: NDArray[np.float64], stage: StageParameters) -> float:
-    """The tracking cost of one executed step, G(z, v; p^g)."""
-    effort = float(control @ (stage.control_weights * control))
-    return effort + _squared_error(state, stage.references[0], stage.state_weights)
-
-
-def _terminal_cost(state: NDArray[np.float64], target: Pose, terminal: TerminalParameters) -> float:
-    """W(z; p^w) of the state that a leg ended in, which was to be at rest in its target pose."""
-    return _squared_error(state, np.concatenate((target, np.zeros(STATE_SIZE - len(target)))), terminal.weights)
-
-
-def _squared_error(state: NDArray[np.float64], wanted: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
-    error = state - wanted
-    error[StateIndex.YAW] = math.remainder(error[StateIndex.YAW], math.tau)
-    return float(error @ (weights * error))

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mala_drake.clock import TICK
-from mala_drake.control import MpcParameters, OptimalControlProblem, Solution, Solver, StageParameters
+from mala_drake.control import MpcParameters, OptimalControlProblem, Solution, Solver
 from mala_drake.control.action_parameters import DrivingStyle, make_parameters
 from mala_drake.control.model import StateIndex
 from mala_drake.control.reference import Track, make_reference, needs_turn
 from mala_drake.control.rti import RealTimeIterationSolver
+from mala_drake.control.tracking_cost import stage_cost
 from mala_drake.messages import Preferences, Shape
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.routes import BODY_RADIUS
@@ -145,7 +146,7 @@ def _loop(
         solution, spent = step(state, parameters, warm_start)
         run.feedback.append(spent)
         run.samples.append(Sample(state, parameters, warm_start, solution))
-        run.cost += _stage_cost(state, solution.controls[0], parameters.stage)
+        run.cost += stage_cost(state, solution.controls[0], parameters.stage)
         warm_start = solution.shifted()
         predicted = problem.step(state, solution.controls[0], parameters.dynamics.vector).full()[:, 0]
         ahead = _Progress(progress.length, progress.turning)
@@ -160,12 +161,6 @@ def _timed(call: Callable[[], _Result]) -> tuple[_Result, float]:
     started = time.thread_time()
     result = call()
     return result, 1e3 * (time.thread_time() - started)
-
-
-def _stage_cost(state: Vector, control: Vector, stage: StageParameters) -> float:
-    error = state - stage.references[0]
-    error[StateIndex.YAW] = np.remainder(error[StateIndex.YAW] + np.pi, 2 * np.pi) - np.pi
-    return float(error**2 @ stage.state_weights + control**2 @ stage.control_weights)
 
 
 def steps_for(track: Track, start_yaw: float) -> int:

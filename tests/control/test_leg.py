@@ -8,7 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mala_drake.clock import TICK
 from mala_drake.control import leg as mut
+from mala_drake.control.optimal_control_problem import OptimalControlProblem
+from mala_drake.control.reference import make_reference
 from mala_drake.messages import Outcome, Shape
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import LegPlanner
@@ -32,6 +35,18 @@ def test_success_needs_place_direction_and_rest():
     assert guide.advance(leg, at(6.0, 0.05, 0.05), ()).outcome is Outcome.SUCCESS
     for almost in (at(6.0, 0.2), at(6.0, 0.0, 0.3), at(6.0, 0.0, 0.0, 0.2), at(6.0, 0.0, 0.0, 0.0, 0.2)):
         assert guide.advance(leg, almost, ()).outcome is Outcome.RUNNING
+
+
+def test_the_reference_follows_the_track_and_shrinks_to_its_end_if_it_is_to():
+    leg, problem = make_guide().begin(TARGET, at(), ()), OptimalControlProblem(horizon=40)
+    whole = leg.reference(at(), problem, None).states
+    np.testing.assert_array_equal(
+        whole, make_reference(leg.track, at(), 0.0, turning=False, horizon=40, period=TICK).states
+    )
+    assert whole[-1, :2] == pytest.approx(TARGET[:2])
+    short = leg.reference(at(), problem, 5).states
+    assert 6 < len(short) < len(whole) == 41
+    np.testing.assert_array_equal(short, whole[: len(short)])
 
 
 def test_the_step_budget_ends_a_leg():

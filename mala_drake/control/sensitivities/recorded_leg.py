@@ -18,7 +18,6 @@ from mala_drake.control.leg import LegGuide, Pose
 from mala_drake.control.model import STATE_SIZE, StateIndex
 from mala_drake.control.optimal_control_problem import OptimalControlProblem
 from mala_drake.control.parameters import DynamicsParameters, MpcParameters
-from mala_drake.control.reference import make_reference
 from mala_drake.control.solver import Solver
 from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION, CostTranslation
 from mala_drake.messages import Outcome, Shape
@@ -101,16 +100,7 @@ class LegRecorder:
         shares: list[Vector] = []
         while leg.outcome is Outcome.RUNNING and leg.track is not None:
             track = leg.track
-            reference = make_reference(
-                track,
-                state,
-                leg.length,
-                turning=leg.turning,
-                horizon=self._problem.horizon,
-                period=self._problem.period,
-            )
-            if self._shortest_horizon is not None:
-                reference = reference.until_rest(self._shortest_horizon)
+            reference = leg.reference(state, self._problem, self._shortest_horizon)
             parameters = make_parameters(
                 style=style,
                 weights=weights,
