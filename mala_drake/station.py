@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role, SceneGraph
+from pydrake.geometry import Meshcat, MeshcatVisualizer, MeshcatVisualizerParams, Role
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, Diagram, DiagramBuilder
+from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder
 
 from mala_drake.control import OptimalControlProblem
@@ -18,7 +18,6 @@ from mala_drake.control_learners import make_control_learners
 from mala_drake.errors import BadInput
 from mala_drake.grounding.atom_memberships import location_membership, predicate_memberships
 from mala_drake.grounding.fuzzy_grounding import FuzzyGrounding
-from mala_drake.learning.abstract_learner import FloatArray
 from mala_drake.learning.cost_estimator import CostEstimator
 from mala_drake.learning.cost_learner import CostLearner
 from mala_drake.learning.make_learner import make_learner
@@ -39,7 +38,6 @@ from mala_drake.robot.obstacle import AddObstacle
 from mala_drake.robot.obstacle_sensor import ObstacleSensor
 from mala_drake.robot.plant import AddCareRobot, CareRobot, MakeCarePlant, X_WB_at
 from mala_drake.robot.safety_monitor import SafetyMonitor
-from mala_drake.robot.sleeping_boxes import SleepingBoxes
 from mala_drake.robot.state_estimator import StateEstimator
 from mala_drake.robot.ward_plant import AddWard
 from mala_drake.robot.world import World
@@ -50,6 +48,7 @@ from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.items import all_items
 from mala_drake.ward.legs import leg_planner
 from mala_drake.ward.ward_map import Ward
+from mala_drake.wiring import Wiring
 
 _FRAME_RATE = 20.0  # Pictures per second in Meshcat.
 
@@ -81,68 +80,6 @@ def MakeCareStation(scenario: Scenario, *, meshcat: Meshcat | None = None, task:
     station.add_learning()
     station.connect()
     return station.build()
-
-
-def StartEpisode(
-    station: Diagram,
-    context: Context,
-    *,
-    episode: int,
-    time: float = 0.0,
-    learner_states: Mapping[str, FloatArray] | None = None,
-) -> None:
-    """Sets a fresh default context up for an episode of the station's run.
-
-    Args:
-        station: from `MakeCareStation`.
-        context: from `station.CreateDefaultContext()`.
-        episode: its number, from 0.
-        time: seconds on the simulation's clock at which it begins, a whole number of ticks.
-        learner_states: what the learners have learned before, from `learner_states_of`; None at the beginning.
-
-    Raises:
-        BadInput: if `learner_states` are those of other learners than the station has.
-    """
-    context.SetTime(time)
-
-    def own(name: str) -> tuple[Any, Context]:
-        system = station.GetSubsystemByName(name)
-        return system, system.GetMyMutableContextFromRoot(context)
-
-    scheduler, its_context = own("scheduler")
-    scheduler.start_at(its_context, episode=episode)
-    estimator, its_context = own("state_estimator")
-    estimator.SetEpisode(its_context, episode)
-    fresh = learner_states_of(station, context)
-    states = fresh if learner_states is None else learner_states
-    if {name: state.shape for name, state in states.items()} != {name: state.shape for name, state in fresh.items()}:
-        told, expected = (
-            ", ".join(f"{name} ({state.size})" for name, state in each.items()) for each in (states, fresh)
-        )
-        raise BadInput("learner_states", told, f"numbers of {expected}")
-    for name, state in states.items():
-        learner, its_context = own(name)
-        learner.set_learner_state(its_context, state, episode=episode)
-
-
-def learner_states_of(station: Diagram, context: Context) -> dict[str, FloatArray]:
-    """What each learner has learned so far in `context`: numbers by the system's name, to carry to the next episode."""
-    learners: list[Any] = [system for system in station.GetSystems() if hasattr(system, "learner_state")]
-    return {each.get_name(): each.learner_state(each.GetMyContextFromRoot(context)) for each in learners}
-
-
-def SleepingBoxesOf(station: Diagram, context: Context) -> SleepingBoxes:
-    """The station's boxes in `context`, awake as they are in a fresh one.
-
-    Who updates them at every tick simulates faster; what happens is the same to the last bit.
-    """
-    plant: MultibodyPlant = station.GetSubsystemByName("plant")
-    scene_graph: SceneGraph = station.GetSubsystemByName("scene_graph")
-    world = station.GetSubsystemByName("world")
-    its_context, clamped = world.GetMyContextFromRoot(context), world.GetOutputPort("clamped")
-    bodies = [plant.get_body(index) for index in sorted(plant.GetFloatingBaseBodies(), key=int)]
-    robot, *boxes = bodies  # The robot is added before the boxes.
-    return SleepingBoxes(plant, scene_graph, robot, boxes, lambda: clamped.Eval(its_context), context)
 
 
 class _StationBuilder:
@@ -298,10 +235,10 @@ class _StationBuilder:
 
     def connect(self) -> None:
         """Wires everything, source by source."""
-        plant, robot = self._plant, self._robot
+        plant, robot, wiring = self._plant, self._robot, Wiring(self._builder)
         # What each layer tells the others.
-        self._wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter, self._action_meter)
-        self._wire(
+        wiring.wire(self._scheduler, "task", self._task_planner, self._world, self._feature_meter, self._action_meter)
+        wiring.wire(
             self._task_planner,
             "action",
             self._controller,
@@ -311,38 +248,38 @@ class _StationBuilder:
             self._feature_meter,
             self._action_meter,
         )
-        self._wire(self._task_planner, "task_report", self._scheduler, self._feature_meter, self._action_meter)
-        self._wire(self._controller, "leg_report", self._task_planner, self._action_meter)
-        self._wire(
+        wiring.wire(self._task_planner, "task_report", self._scheduler, self._feature_meter, self._action_meter)
+        wiring.wire(self._controller, "leg_report", self._task_planner, self._action_meter)
+        wiring.wire(
             self._executor, "in_place_report", self._task_planner, self._world, self._grounding, self._action_meter
         )
-        self._wire(self._executor, "magnet", self._magnet, self._world, self._controller)
-        self._wire(self._executor, "arm_target", self._arm)
-        self._wire(self._executor, "charge_rates", self._battery)
-        self._wire(self._world, "world_facts", self._grounding)
-        self._wire(self._world, "handed_item", self._executor)
-        self._wire(self._world, "clamped", self._magnet)
-        self._wire(self._grounding, "symbolic_state", self._task_planner)
-        self._wire(self._grounding, "place_mismatch", self._action_meter)
-        self._wire(self._obstacle_sensor, "obstacles", self._controller)
-        self._wire(self._feature_meter, "episode_report", self._patient)
-        self._wire(self._feature_meter, "action_features", self._action_meter)
-        self._wire(self._patient, "ratings", self._learner)
-        self._wire(self._learner, "preferences", self._task_planner, self._controller, self._action_meter)
+        wiring.wire(self._executor, "magnet", self._magnet, self._world, self._controller)
+        wiring.wire(self._executor, "arm_target", self._arm)
+        wiring.wire(self._executor, "charge_rates", self._battery)
+        wiring.wire(self._world, "world_facts", self._grounding)
+        wiring.wire(self._world, "handed_item", self._executor)
+        wiring.wire(self._world, "clamped", self._magnet)
+        wiring.wire(self._grounding, "symbolic_state", self._task_planner)
+        wiring.wire(self._grounding, "place_mismatch", self._action_meter)
+        wiring.wire(self._obstacle_sensor, "obstacles", self._controller)
+        wiring.wire(self._feature_meter, "episode_report", self._patient)
+        wiring.wire(self._feature_meter, "action_features", self._action_meter)
+        wiring.wire(self._patient, "ratings", self._learner)
+        wiring.wire(self._learner, "preferences", self._task_planner, self._controller, self._action_meter)
         for learner in self._control_learners:
-            self._listen(learner, self._task_planner, self._controller, self._executor, self._grounding)
-            self._listen(learner, self._obstacle_sensor, self._action_meter, self._learner, *self._control_learners)
-        self._listen(self._controller, *self._control_learners)
+            wiring.listen(learner, self._task_planner, self._controller, self._executor, self._grounding)
+            wiring.listen(learner, self._obstacle_sensor, self._action_meter, self._learner, *self._control_learners)
+        wiring.listen(self._controller, *self._control_learners)
         # What everybody senses.
-        self._fan_out("plant_state", plant.get_state_output_port(robot.robot))
-        self._fan_out("arm_state", plant.get_state_output_port(robot.arm))
+        wiring.fan_out("plant_state", plant.get_state_output_port(robot.robot))
+        wiring.fan_out("arm_state", plant.get_state_output_port(robot.arm))
         if self._cost_learner is not None:
-            self._wire(self._feature_meter, "action_features", self._cost_learner)
-            self._wire(self._cost_learner, "learned_costs", self._task_planner)
-        self._fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
-        self._fan_out("control", self._controller.GetOutputPort("control"))
-        self._fan_out("charge", self._battery.GetOutputPort("charge"))
-        self._fan_out("item_positions", self._item_positions.GetOutputPort("item_positions"))
+            wiring.wire(self._feature_meter, "action_features", self._cost_learner)
+            wiring.wire(self._cost_learner, "learned_costs", self._task_planner)
+        wiring.fan_out("robot_state", self._state_estimator.GetOutputPort("robot_state"))
+        wiring.fan_out("control", self._controller.GetOutputPort("control"))
+        wiring.fan_out("charge", self._battery.GetOutputPort("charge"))
+        wiring.fan_out("item_positions", self._item_positions.GetOutputPort("item_positions"))
         # The robot's body.
         connect = self._builder.Connect
         connect(plant.get_state_output_port(), self._magnet.GetInputPort("state"))
@@ -354,24 +291,6 @@ class _StationBuilder:
         connect(self._gyroscopic_effect.GetOutputPort("generalized_force"), self._forces.get_input_port(1))
         connect(self._forces.get_output_port(), plant.get_applied_generalized_force_input_port())
         connect(self._drivetrain.GetOutputPort("power"), self._battery.GetInputPort("power"))
-
-    def _wire(self, source: Any, name: str, *targets: Any) -> None:
-        """Connects the output port `name` to the input ports of the same name."""
-        for target in targets:
-            self._builder.Connect(source.GetOutputPort(name), target.GetInputPort(name))
-
-    def _listen(self, listener: Any, *sources: Any) -> None:
-        """Connects the inputs of a system to the outputs of the same names that others have."""
-        for source in sources:
-            for port in map(source.get_output_port, range(source.num_output_ports())):
-                if listener.HasInputPort(port.get_name()):
-                    self._builder.Connect(port, listener.GetInputPort(port.get_name()))
-
-    def _fan_out(self, name: str, port: Any) -> None:
-        """Connects `port` to every input port called `name` that is still open."""
-        for system in self._builder.GetSystems():
-            if system.HasInputPort(name) and not self._builder.IsConnectedOrExported(system.GetInputPort(name)):
-                self._builder.Connect(port, system.GetInputPort(name))
 
     def build(self) -> Diagram:
         """The finished diagram, shown in Meshcat if there is one."""

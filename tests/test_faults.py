@@ -15,7 +15,8 @@ from mala_drake.messages import Outcome
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.robot.plant_state import V_X, X, Y
 from mala_drake.scenario import ObstacleConfig, Scenario
-from mala_drake.station import MakeCareStation, StartEpisode
+from mala_drake.station import MakeCareStation
+from mala_drake.station_context import StartEpisode
 
 
 class Notes:

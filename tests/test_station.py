@@ -11,10 +11,13 @@ from pydrake.systems.framework import PortDataType
 from mala_drake import station as mut
 from mala_drake.clock import PLANT_STEP, TICK
 from mala_drake.errors import BadInput
-from mala_drake.learning import DynamicsEstimator, Posterior
+from mala_drake.learning import DynamicsEstimator
 from mala_drake.robot.plant import X_WB_at
 from mala_drake.robot.plant_state import V_X, X, Y, planar_state_of, yaw_of
 from mala_drake.scenario import DisplacedPlaceConfig, ObstacleConfig, Scenario
+from mala_drake.station_context import learner_states_of
+
+from .station_ports import read, robot_state
 
 OURS = [
     "scheduler",
@@ -43,15 +46,6 @@ OURS = [
 @pytest.fixture(scope="module")
 def station():
     return mut.MakeCareStation(Scenario())
-
-
-def read(station, context, system, port):
-    subsystem = station.GetSubsystemByName(system)
-    return subsystem.GetOutputPort(port).Eval(subsystem.GetMyContextFromRoot(context))
-
-
-def robot_state(station, context):
-    return read(station, context, "plant", "care_robot_state")
 
 
 @pytest.mark.parametrize("name", OURS)
@@ -89,7 +83,7 @@ def test_the_target_learner_is_there_when_it_is_wanted(assert_port_box):
     names = ("learned_dynamics", "learned_weights")
     assert open_inputs(station, ["target_learner"]) == [("target_learner", name) for name in names]
     assert_port_box(station.GetSubsystemByName("target_learner"))
-    assert "target_learner" in mut.learner_states_of(station, station.CreateDefaultContext())
+    assert "target_learner" in learner_states_of(station, station.CreateDefaultContext())
 
 
 def test_the_dynamics_learner_is_there_when_it_is_wanted(assert_port_box):
@@ -99,7 +93,7 @@ def test_the_dynamics_learner_is_there_when_it_is_wanted(assert_port_box):
     assert ("mpc_controller", "learned_dynamics") not in open_inputs(station, OURS)
     assert open_inputs(station, ["dynamics_learner"]) == []
     assert_port_box(station.GetSubsystemByName("dynamics_learner"))
-    states = mut.learner_states_of(station, station.CreateDefaultContext())
+    states = learner_states_of(station, station.CreateDefaultContext())
     assert states["dynamics_learner"] == pytest.approx(DynamicsEstimator().initial_state())
 
 
@@ -112,7 +106,7 @@ def test_the_weight_learner_is_there_when_it_is_wanted(assert_port_box, weights,
     names = ("learned_dynamics", "learned_targets")
     assert open_inputs(station, ["weight_learner"]) == [("weight_learner", name) for name in names]
     assert_port_box(station.GetSubsystemByName("weight_learner"))
-    state = mut.learner_states_of(station, station.CreateDefaultContext())["weight_learner"]
+    state = learner_states_of(station, station.CreateDefaultContext())["weight_learner"]
     assert state.size == size + weights * 11 * len(scenario.load_ward().places)
 
 
@@ -193,49 +187,6 @@ def test_the_robot_moves_continuously_and_where_its_wheels_take_it(station):
         sideways = abs(now[V_X] * along[1] - now[V_X + 1] * along[0])
         assert sideways < 0.05
         before = now
-
-
-def test_two_contexts_of_one_diagram_run_alike(station):
-    states = []
-    for _ in range(2):
-        context = station.CreateDefaultContext()
-        mut.StartEpisode(station, context, episode=1, time=0.0)
-        simulator = Simulator(station, context)
-        simulator.AdvanceTo(5.0)
-        states.append(robot_state(station, context).copy())
-        assert read(station, context, "scheduler", "task").episode == 1
-    assert (states[0] == states[1]).all()
-
-
-def test_a_later_start_on_the_clock_changes_nothing_but_the_clock(station):
-    travelled = []
-    for time in (0.0, 500 * TICK):
-        context = station.CreateDefaultContext()
-        mut.StartEpisode(station, context, episode=0, time=time)
-        simulator = Simulator(station, context)
-        simulator.AdvanceTo(time + 5.0)
-        travelled.append(robot_state(station, context)[[X, Y]].copy())
-    assert travelled[0] == pytest.approx(travelled[1], abs=0.02)
-
-
-def test_learned_weights_are_carried_into_the_next_episode(station):
-    context = station.CreateDefaultContext()
-    learner = Posterior()
-    learned = learner.update(learner.initial_state(), ratings=(3.0, 4.0, 4.5, 4.5, 4.5), features=(0.9,) * 5)
-    states = {**mut.learner_states_of(station, context), "preference_learner": learned}
-    mut.StartEpisode(station, context, episode=1, learner_states=states)
-    assert list(mut.learner_states_of(station, context)) == ["preference_learner", "cost_learner"]
-    assert mut.learner_states_of(station, context)["preference_learner"] == pytest.approx(learned)
-    assert read(station, context, "preference_learner", "preferences").estimate == pytest.approx(
-        learner.estimate(learned)
-    )
-
-
-@pytest.mark.parametrize("states", [{}, {"preference_learner": np.zeros(2)}, {"another_learner": np.zeros(6)}])
-def test_what_another_stations_learners_have_learned_is_refused(station, states):
-    context = station.CreateDefaultContext()
-    with pytest.raises(BadInput, match=r"learner_states.*expected numbers of preference_learner"):
-        mut.StartEpisode(station, context, episode=1, learner_states=states)
 
 
 def test_abstract_ports_carry_immutable_messages(station):

@@ -16,7 +16,7 @@ from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.experiments.episode_watch import EpisodeWatch
 from mala_drake.scenario import Scenario
-from mala_drake.station import SleepingBoxesOf, StartEpisode, learner_states_of
+from mala_drake.station_context import SleepingBoxesOf, StartEpisode, learner_states_of
 
 
 @dataclass(frozen=True, slots=True)

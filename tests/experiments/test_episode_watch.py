@@ -12,7 +12,8 @@ from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.learning.dynamics_estimator import DynamicsEstimator, Transition
 from mala_drake.messages import Action, ActionKind
 from mala_drake.scenario import Scenario
-from mala_drake.station import MakeCareStation, StartEpisode, learner_states_of
+from mala_drake.station import MakeCareStation
+from mala_drake.station_context import StartEpisode, learner_states_of
 from mala_drake.ward.features import FEATURE_SCALES
 
 SECONDS = 6.0

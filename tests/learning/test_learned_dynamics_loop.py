@@ -20,7 +20,8 @@ from mala_drake.robot.gyroscopic_effect import YAW_COUPLING
 from mala_drake.robot.hidden_truth import WHEEL_RADIUS_ERRORS
 from mala_drake.robot.robot_parameters import NOMINAL
 from mala_drake.scenario import Scenario
-from mala_drake.station import MakeCareStation, SleepingBoxesOf, StartEpisode, learner_states_of
+from mala_drake.station import MakeCareStation
+from mala_drake.station_context import SleepingBoxesOf, StartEpisode, learner_states_of
 
 FAST = 1.0  # m/s
 
