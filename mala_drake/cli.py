@@ -9,20 +9,16 @@ from __future__ import annotations
 import json
 import logging
 import math
-import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
 from mala_drake import __version__
+from mala_drake.cli_options import chosen_scenario, names_of, search_of, seeds_of, weights_of
 from mala_drake.errors import BadInput
-
-if TYPE_CHECKING:
-    from mala_drake.planning.planner import SearchName
-    from mala_drake.scenario import Scenario
 
 app = typer.Typer(
     name="mala-drake",
@@ -36,22 +32,9 @@ ScenarioFile = Annotated[Path | None, typer.Argument(help="Scenario file; the de
 # Click's UsageError: typer exports its subclass only, and brings a click of its own or uses the installed one.
 _USAGE_ERROR: type[BaseException] = typer.BadParameter.__mro__[1]
 
-_SEARCHES: tuple[SearchName, ...] = ("astar", "ucs")
-
 _WEIGHT_FLUENTS = ("(w0)", "(w1)", "(w2)", "(w3)", "(w4)")
 
 _INTERRUPTED = 130  # What a shell calls a program ended by Control-C.
-
-_MOST_SEEDS = 10_000  # Of one range: more are a slip of the hand.
-
-_OPTION_OF = {
-    "task": "--task",
-    "patient.profile": "--profile",
-    "episodes": "--episodes",
-    "random_seed": "--seed",
-    "control.solver": "--solver",
-}
-"""The options that set a field of the scenario."""
 
 
 @app.callback(invoke_without_command=True)
@@ -92,7 +75,7 @@ def run(
     from mala_drake.experiments.run import RunOptions, run_scenario
     from mala_drake.reporting.console import RunConsole
 
-    chosen = _chosen_scenario(scenario, task, profile, episodes, seed, solver)
+    chosen = chosen_scenario(scenario, task, profile, episodes, seed, solver)
     options = RunOptions(out=out, html=html, realtime_rate=realtime_rate, live=meshcat)
     with RunConsole(chosen, quiet=as_json) as console:
         summary = run_scenario(chosen, options, watcher=console)
@@ -102,27 +85,6 @@ def run(
         console.show(summary)
         console.show_files(options.files)
     raise typer.Exit(0 if summary["totals"]["successes"] == summary["totals"]["episodes"] else 1)
-
-
-def _chosen_scenario(
-    file: Path | None, task: str | None, profile: str | None, episodes: int | None, seed: int | None, solver: str | None
-) -> Scenario:
-    """The scenario of the file with what the options change; a mistake is told by the name of its option."""
-    from mala_drake.scenario import LoadScenario, Validate, reset_unused
-
-    chosen = LoadScenario(file)
-    chosen.task = chosen.task if task is None else task
-    if profile is not None:
-        chosen.patient.profile, chosen.patient.true_weights = profile, []
-    chosen.episodes = chosen.episodes if episodes is None else episodes
-    chosen.random_seed = chosen.random_seed if seed is None else seed
-    chosen.control.solver = chosen.control.solver if solver is None else solver
-    reset_unused(chosen)  # What the file sets of the solver that an option has replaced.
-    try:
-        Validate(chosen, where="")
-    except BadInput as error:
-        raise BadInput(_OPTION_OF.get(error.where, error.where), error.what, error.expected) from None
-    return chosen
 
 
 @app.command()
@@ -135,12 +97,10 @@ def plan(
     as_json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON and nothing else.")] = False,
 ) -> None:
     """Solve a PDDL task to optimality."""
-    values = _weights(weights)
+    values = weights_of(weights)
     if timeout is not None and not (math.isfinite(timeout) and timeout > 0):
         raise BadInput("--timeout", str(timeout), "a positive number of seconds")
-    chosen = next((name for name in _SEARCHES if name == search), None)
-    if chosen is None:
-        raise BadInput("--search", repr(search), "one of " + ", ".join(_SEARCHES))
+    chosen = search_of(search)
     from mala_drake.planning import plan_to_json, solve_files
 
     try:
@@ -156,18 +116,6 @@ def plan(
     else:
         _print_plan(result)
     raise typer.Exit(0 if result["status"] == "optimal" else 1)
-
-
-def _weights(text: str | None) -> tuple[float, ...] | None:
-    if text is None:
-        return None
-    try:
-        values = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise BadInput("--weights", repr(text), "five numbers w0,w1,w2,w3,w4") from None
-    from mala_drake.preferences import validated_weights
-
-    return validated_weights(values, where="--weights")
 
 
 def _print_plan(result: dict[str, Any]) -> None:
@@ -259,10 +207,10 @@ def experiment(
             raise BadInput(option, f"with {name}", f"{kind.condition_option}, or nothing")
     options = ExperimentOptions(
         scenario=scenario,
-        profiles=_names("--profiles", profiles),
-        seeds=_seeds(seeds),
+        profiles=names_of("--profiles", profiles),
+        seeds=seeds_of(seeds),
         episodes=episodes,
-        conditions=_names(kind.condition_option, chosen[kind.condition_option]),
+        conditions=names_of(kind.condition_option, chosen[kind.condition_option]),
         full=full,
         task=task,
         solver=solver,
@@ -277,29 +225,6 @@ def experiment(
         console.show(summary)
         console.show_files(files_of(kind, folder))
     raise typer.Exit(0 if _all_done(summary) else 1)
-
-
-def _names(option: str, text: str | None) -> tuple[str, ...] | None:
-    if text is None:
-        return None
-    names = tuple(part.strip() for part in text.split(","))
-    if not all(names):
-        raise BadInput(option, repr(text), "names separated by commas")
-    return names
-
-
-def _seeds(text: str | None) -> tuple[int, ...] | None:
-    """The seeds of `0,1,7` or `0-4`."""
-    if text is None:
-        return None
-    seeds: list[int] = []
-    for part in text.split(","):
-        ends = re.fullmatch(r"\s*(\d{1,9})(?:-(\d{1,9}))?\s*", part)
-        numbers = range(int(ends[1]), int(ends[2] or ends[1]) + 1) if ends else range(0)
-        if not 0 < len(numbers) <= _MOST_SEEDS:
-            raise BadInput("--seeds", repr(text), "whole numbers >= 0, for example 0,1,7 or 0-4")
-        seeds += numbers
-    return tuple(seeds)
 
 
 def _all_done(summary: dict[str, Any]) -> bool:
