@@ -50,6 +50,12 @@ _GRADIENT, _RTI = "learner.name: " + " or ".join(_GRADIENT_LEARNERS), "control.s
 _TARGETS = "control.learned_targets: true"
 
 _SETTINGS = (
+    _Setting(
+        "patient",
+        "earlier_weights",
+        lambda s: s.patient.earlier_episodes > 0,
+        "patient.earlier_episodes: the number of episodes that they are for",
+    ),
     _Setting("learner", "learning_rate", _with_gradient, _GRADIENT),
     _Setting("learner", "exploration", _with_gradient, _GRADIENT),
     _Setting("learner", "exploration_decay", _with_gradient, _GRADIENT),

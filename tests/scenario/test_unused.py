@@ -16,6 +16,11 @@ GRADIENT = "learner.name: projected_gradient or reference_gradient"
 @pytest.mark.parametrize(
     ("text", "what", "choice"),
     [
+        (
+            "patient: {earlier_weights: [0.2, 0.2, 0.2, 0.2, 0.2]}",
+            "patient.earlier_weights: [0.2, 0.2, 0.2, 0.2, 0.2]",
+            "patient.earlier_episodes",
+        ),
         ("learner: {learning_rate: 0.05}", "learner.learning_rate: 0.05", GRADIENT),
         ("learner: {exploration: 0.0}", "learner.exploration: 0.0", GRADIENT),
         ("learner: {name: bandit, exploration_decay: 0.5}", "learner.exploration_decay: 0.5", GRADIENT),
@@ -47,6 +52,8 @@ def test_a_setting_that_changes_nothing_is_refused_with_what_would_use_it(load_s
 @pytest.mark.parametrize(
     "text",
     [
+        "patient: {earlier_weights: [0.2, 0.2, 0.2, 0.2, 0.2], earlier_episodes: 1}",
+        "patient: {earlier_weights: [], earlier_episodes: 0}",
         "learner: {name: projected_gradient, learning_rate: 0.05, exploration: 0.0, exploration_decay: 0.5}",
         "learner: {name: reference_gradient, learning_rate: 0.05}",
         "learner: {exploration_until: 1.0}",
@@ -64,10 +71,12 @@ def test_a_setting_that_is_used_or_as_usual_is_not(load_scenario, text):
 
 def test_what_changes_nothing_is_reset_and_nothing_else():
     scenario = Scenario()
+    scenario.patient.earlier_weights, scenario.patient.noise = [0.2] * 5, 0.2
     scenario.learner.learning_rate, scenario.learner.exploration_until = 0.05, 0.5
     scenario.control.sqp_iterations, scenario.control.translation_rate, scenario.control.tolerance = 1, 0.01, 1e-3
     mut.reset_unused(scenario)
     usual = Scenario()
+    assert scenario.patient == replace(usual.patient, noise=0.2)
     assert scenario.learner == replace(usual.learner, exploration_until=0.5)
     assert scenario.control == replace(usual.control, sqp_iterations=1, tolerance=1e-3)
     Validate(scenario)

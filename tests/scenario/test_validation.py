@@ -94,7 +94,7 @@ def test_no_number_may_be_negative(prefix, name):
         ("learner: {name: oracle}", ["learner.name: 'oracle'", "projected_gradient", "fixed"]),
         ("grounding: {membership: vague}", ["grounding.membership: 'vague'", "fuzzy, crisp"]),
         ("world: {risk_variation: 1.5}", ["world.risk_variation: 1.5", "from 0 to 1"]),
-        ("patient: {earlier_weights: [1, 1, 0, 0, 0]}", ["patient.earlier_weights", "expected 1"]),
+        ("patient: {earlier_weights: [1, 1, 0, 0, 0], earlier_episodes: 3}", ["patient.earlier_weights", "expected 1"]),
         ("patient: {earlier_episodes: -1}", ["patient.earlier_episodes: -1", ">= 0"]),
         ("patient: {earlier_episodes: 3}", ["patient.earlier_weights: none", "weights of those"]),
         ("learner: {random_initial_weights: true}", ["learner.initial_weights: given to posterior"]),
