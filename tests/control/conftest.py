@@ -17,6 +17,8 @@ from mala_drake.control import (
     TerminalParameters,
 )
 
+from .controller_bench import ControllerBench
+
 
 @pytest.fixture(scope="session")
 def problem() -> OptimalControlProblem:
@@ -32,6 +34,12 @@ def snopt(problem: OptimalControlProblem) -> Solver:
 @pytest.fixture(scope="session")
 def rti(problem: OptimalControlProblem) -> Solver:
     return MakeSolver("rti", problem)
+
+
+@pytest.fixture
+def bench(problem: OptimalControlProblem) -> ControllerBench:
+    """A controller with SNOPT."""
+    return ControllerBench(problem)
 
 
 @pytest.fixture(scope="session")
