@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import mala_drake.control.sensitivities.cost_sensitivity as mut
-from mala_drake.control import MakeSolver, OptimalControlProblem
+from mala_drake.control import MakeSolver
 from mala_drake.control.action_parameters import EMPTY_HANDED, learned_style
-from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.leg import LegRules
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.leg_cost import LegCost
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
@@ -19,31 +19,14 @@ from mala_drake.control.sensitivities.weight_schedule import weight_schedule
 from mala_drake.control.solver_by_horizon import solver_of_kind
 from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION
 from mala_drake.learning.weight_estimator import WeightEstimator
-from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights, Shape
+from mala_drake.messages import DrivenLeg, LearnedDynamics, LearnedWeights, Shape
 from mala_drake.robot.drive_charge import charge_rate
-from mala_drake.ward.congestion import Congestion
-from mala_drake.ward.legs import LegPlanner
-from mala_drake.ward.ward_map import Ward
 
-HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
-THERE = (2.0, 0.6, 0.5)
-GO = Action(1, ActionKind.MOVE, "go_to_there", ("robot1",), "there")
+from .hall import GO, HALL, THERE, make
+
 WEIGHTS = (0.5, 0.12, 0.14, 0.14, 0.10)
 PRICES = (0.004, 0.5, 0.14, 0.014, 0.08)
 COST = LegCost(bed=Shape("bed", 2.0, 2.2, 0.3, 0.8, 0.4), charge_rate=charge_rate)
-
-
-def make(system, problem, rules=None, *, kind="receding"):
-    """Who drives legs, with what a controller has."""
-    congestion = Congestion(HALL)
-    guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
-    solver, shortest = solver_of_kind(kind, "rti", problem)
-    return system(problem, solver, guide, congestion, shortest_horizon=shortest)
-
-
-@pytest.fixture(scope="module")
-def problem():
-    return OptimalControlProblem()
 
 
 def gradient(problem, rules=None, *, prices=PRICES, bedsides=("there",), kind="receding", **how):

@@ -8,41 +8,22 @@ import numpy as np
 import pytest
 
 import mala_drake.control.sensitivities.leg_simulator as mut
-from mala_drake.control import MakeSolver, OptimalControlProblem
 from mala_drake.control.action_parameters import CARRYING, EMPTY_HANDED
-from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.leg import LegRules
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ScheduledParameters
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
 from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION, CostTranslation
-from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights, Shape
-from mala_drake.ward.congestion import Congestion
-from mala_drake.ward.legs import LegPlanner
-from mala_drake.ward.ward_map import Ward
+from mala_drake.messages import DrivenLeg, LearnedDynamics, LearnedWeights, Shape
 
-HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
+from .hall import GO, make
+
 BEGAN = (0.1, 0.0, 0.2, 0.0, 0.0, 0.0)
-LEG = DrivenLeg(
-    Action(1, ActionKind.MOVE, "go_to_there", ("robot1",), "there"),
-    BEGAN,
-    (1.5, 0.4, 0.3),
-    preferences=(0.5, 0.12, 0.14, 0.14, 0.10),
-)
+LEG = DrivenLeg(GO, BEGAN, (1.5, 0.4, 0.3), preferences=(0.5, 0.12, 0.14, 0.14, 0.10))
 COEFFICIENTS = (4.0, 0.1, 0.2, 0.9, 0.9, 0.8)
 GAINS = 0.5 * DEFAULT_TRANSLATION.gains
 LEARNED = LearnedWeights((("there", (2.0, 1.0, 0.5, 1.5)),), tuple(map(tuple, GAINS.tolist())))
 TROLLEY = (Shape("trolley", 0.8, 0.15, radius=0.2),)
-
-
-@pytest.fixture(scope="module")
-def problem():
-    return OptimalControlProblem()
-
-
-def tools(problem, rules=None):
-    congestion = Congestion(HALL)
-    guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
-    return problem, MakeSolver("rti", problem), guide, congestion
 
 
 def simulated(problem, leg, rules=None):
@@ -53,7 +34,7 @@ def simulated(problem, leg, rules=None):
         seen.extend(recorded.steps)
         return recorded.with_knobs(NOMINAL, columns)
 
-    return mut.LegSimulator(*tools(problem, rules))(leg, schedule), seen
+    return make(mut.LegSimulator, problem, rules)(leg, schedule), seen
 
 
 @pytest.mark.parametrize(
@@ -76,7 +57,7 @@ def simulated(problem, leg, rules=None):
 def test_it_is_driven_with_what_the_real_leg_was_driven_with(problem, how, expected):
     run, steps = simulated(problem, replace(LEG, **how))
     by_hand = {"style": EMPTY_HANDED, "obstacles": (), "weights": LEG.preferences, **expected}
-    recorded = LegRecorder(*tools(problem)).record(BEGAN, LEG.target, **by_hand)
+    recorded = make(LegRecorder, problem).record(BEGAN, LEG.target, **by_hand)
     assert len(run.steps) == len(steps) == len(recorded.steps)
     np.testing.assert_array_equal(run.states[0], BEGAN)
     for ours, theirs in zip(steps, recorded.steps, strict=True):
@@ -93,7 +74,7 @@ def test_its_knobs_are_those_of_the_schedule(problem):
         steps = [whole.at(i, np.zeros(6)) for i in range(len(recorded.steps))]
         return ScheduledParameters([replace(step, by_knobs=step.by_knobs[:, :2]) for step in steps], whole.groups)
 
-    run = mut.LegSimulator(*tools(problem))(LEG, two_knobs)
+    run = make(mut.LegSimulator, problem)(LEG, two_knobs)
     assert {step.policy_by_knobs.shape for step in run.steps} == {(3, 2)}
 
 

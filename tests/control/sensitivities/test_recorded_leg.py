@@ -9,35 +9,20 @@ from pydrake.systems.analysis import Simulator
 
 import mala_drake.control.sensitivities.recorded_leg as mut
 from mala_drake.clock import TICK
-from mala_drake.control import OptimalControlProblem
 from mala_drake.control.action_parameters import EMPTY_HANDED
-from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.leg import LegRules
 from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.sensitivities import LOWER, UPPER, SensitivityAnalysis
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, solver_of_kind
 from mala_drake.messages import Action, ActionKind, MagnetCommand, Obstacles, Preferences
-from mala_drake.ward.congestion import Congestion
-from mala_drake.ward.legs import LegPlanner
-from mala_drake.ward.ward_map import Ward
 
-HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
-THERE = (2.0, 0.6, 0.5)
-
-
-@pytest.fixture(scope="module")
-def problem():
-    return OptimalControlProblem()
-
-
-def make_guide(rules=None):
-    congestion = Congestion(HALL)
-    return LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules()), congestion
+from .hall import HALL, THERE, make, make_guide
 
 
 def record(problem, rules=None, *, kind="receding"):
-    solver, shortest = solver_of_kind(kind, "rti", problem)
-    recorder = mut.LegRecorder(problem, solver, *make_guide(rules), shortest_horizon=shortest)
-    return recorder.record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=(0.2,) * 5)
+    return make(mut.LegRecorder, problem, rules, kind=kind).record(
+        np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=(0.2,) * 5
+    )
 
 
 @pytest.fixture(scope="module")

@@ -8,37 +8,19 @@ import numpy as np
 import pytest
 
 import mala_drake.control.sensitivities.target_sensitivity as mut
-from mala_drake.control import OptimalControlProblem
 from mala_drake.control.action_parameters import learned_style
-from mala_drake.control.leg import LegGuide, LegRules
+from mala_drake.control.leg import LegRules
 from mala_drake.control.parameters import DynamicsParameters
 from mala_drake.control.sensitivities import ClosedLoop, ClosedLoopRun, SensitivityAnalysis, SimulationModel
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.sensitivities.recorded_leg import NOMINAL, LegRecorder
 from mala_drake.control.solver_by_horizon import solver_of_kind
-from mala_drake.messages import Action, ActionKind, DrivenLeg, LearnedDynamics, LearnedWeights
-from mala_drake.ward.congestion import Congestion
-from mala_drake.ward.legs import LegPlanner
-from mala_drake.ward.ward_map import Ward
+from mala_drake.messages import DrivenLeg, LearnedDynamics, LearnedWeights
 
-HALL = Ward("hall", 10.0, 0.2, 2.0, (), (), (), 0.02)
-THERE = (2.0, 0.6, 0.5)
-GO = Action(1, ActionKind.MOVE, "go_to_there", ("robot1",), "there")
+from .hall import GO, HALL, THERE, make
+
 WEIGHTS = (0.2,) * 5
 NOMINAL_ROBOT = LearnedDynamics()
-
-
-def make(system, problem, rules=None, *, kind="receding"):
-    """Who drives legs, with what a controller has."""
-    congestion = Congestion(HALL)
-    guide = LegGuide(LegPlanner(HALL), congestion, HALL.shapes, rules or LegRules())
-    solver, shortest = solver_of_kind(kind, "rti", problem)
-    return system(problem, solver, guide, congestion, shortest_horizon=shortest)
-
-
-@pytest.fixture(scope="module")
-def problem():
-    return OptimalControlProblem()
 
 
 def sensitivity(problem, rules=None, learned=NOMINAL_ROBOT, kind="receding", **how):
