@@ -111,6 +111,8 @@ class LegRecorder:
                 translation=translation,
             )
             solution = self._solver.solve(state, parameters, warm_start)
+            if not solution.usable:
+                raise RuntimeError(f"ended as {Outcome.SOLVER_FAILURE.value}: a solve ended as {solution.status.value}")
             steps.append(parameters)
             positions = reference.states[:, [StateIndex.X, StateIndex.Y]]
             reached = [track.progress(position, leg.length)[0] for position in positions]

@@ -13,6 +13,7 @@ from mala_drake.control.action_parameters import EMPTY_HANDED
 from mala_drake.control.leg import LegRules
 from mala_drake.control.mpc_controller import MpcController
 from mala_drake.control.sensitivities import LOWER, UPPER, SensitivityAnalysis
+from mala_drake.control.solution import invalid_solution
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, solver_of_kind
 from mala_drake.messages import Action, ActionKind, MagnetCommand, Obstacles, Preferences
 
@@ -103,6 +104,18 @@ def test_a_horizon_that_shrinks_is_recorded_with_the_references_up_to_its_end(pr
 def test_a_leg_that_does_not_succeed_is_an_error(problem):
     with pytest.raises(RuntimeError, match=r"^ended as step_budget: 3 control steps"):
         record(problem, LegRules(step_budget=3))
+
+
+def test_a_solve_that_no_robot_is_driven_with_is_an_error(problem):
+    class Broken:
+        name = "broken"
+
+        def solve(self, *_):
+            return invalid_solution(problem.layout)
+
+    recorder = mut.LegRecorder(problem, Broken(), *make_guide())
+    with pytest.raises(RuntimeError, match=r"^ended as solver_failure: a solve ended as invalid_input$"):
+        recorder.record(np.zeros(6), THERE, HALL.shapes, style=EMPTY_HANDED, weights=(0.2,) * 5)
 
 
 @pytest.mark.parametrize("kind", ["receding", "shrinking"])
