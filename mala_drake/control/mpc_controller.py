@@ -26,6 +26,7 @@ from mala_drake.messages import (
     PredictedTrajectory,
     Preferences,
 )
+from mala_drake.optional_input import told
 from mala_drake.ward.congestion import Congestion
 
 from .action_parameters import DrivingStyle, learned_style, make_parameters
@@ -172,8 +173,7 @@ class MpcController(LeafSystem):
             state.get_mutable_abstract_state(self._driving).set_value(driving)
 
     def _accept(self, context: Context, action: Action) -> _Driving:
-        connected = self._learned_weights.HasValue(context)
-        learned: LearnedWeights = self._learned_weights.Eval(context) if connected else LearnedWeights()
+        learned = told(self._learned_weights, context, LearnedWeights())
         driving = _Driving(
             action=action,
             style=learned_style(action, learned, carrying=bool(self._magnet.Eval(context).held)),
@@ -205,10 +205,7 @@ class MpcController(LeafSystem):
     def _target(self, context: Context, place: str) -> Pose | None:
         """Where the robot is to stop for a place: p^w of the action that leads there."""
         pose = self._targets.get(place)
-        if pose is None or not self._learned_targets.HasValue(context):
-            return pose
-        learned: LearnedTargets = self._learned_targets.Eval(context)
-        return learned.pose(place, pose)
+        return None if pose is None else told(self._learned_targets, context, LearnedTargets()).pose(place, pose)
 
     def _solve(self, context: Context, driving: _Driving, leg: Leg, robot_state: NDArray[np.float64]) -> _Driving:
         parameters = make_parameters(
@@ -247,9 +244,7 @@ class MpcController(LeafSystem):
 
     def _dynamics(self, context: Context) -> DynamicsParameters | None:
         """p^f as learned, or None for the nominal one."""
-        if not self._learned_dynamics.HasValue(context):
-            return None
-        return learned_parameters(self._learned_dynamics.Eval(context))
+        return learned_parameters(told(self._learned_dynamics, context, LearnedDynamics()))
 
     def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
         """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""

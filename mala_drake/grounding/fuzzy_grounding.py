@@ -29,6 +29,7 @@ from mala_drake.messages import (
     SymbolicState,
     WorldFacts,
 )
+from mala_drake.optional_input import told
 
 SIGHT = 6.0
 """Metres within which the robot sees the mark of a place."""
@@ -182,8 +183,7 @@ class FuzzyGrounding(LeafSystem):
 
     def _calc_reach_mismatch(self, context: Context, output: Value) -> None:
         action: Action = self._action.Eval(context)
-        connected = self._in_place_report.HasValue(context)
-        report: ActionReport = self._in_place_report.Eval(context) if connected else ActionReport()
+        report = told(self._in_place_report, context, ActionReport())
         if report.shortfall is None or report.sequence != action.sequence:
             output.set_value(PlaceMismatch())
             return

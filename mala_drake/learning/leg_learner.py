@@ -20,6 +20,7 @@ from mala_drake.messages import (
     Obstacles,
     Preferences,
 )
+from mala_drake.optional_input import told
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +90,9 @@ class LegLearner(LearnerSystem):
 
     def _completed(self, context: Context, leg: DrivenLeg) -> DrivenLeg:
         """A leg with what is only known as it is driven."""
-        connected = self._learned_dynamics.HasValue(context)
         return replace(
             leg,
             obstacles=self._obstacles.Eval(context).shapes,
             preferences=self._preferences.Eval(context).estimate,
-            dynamics=self._learned_dynamics.Eval(context) if connected else LearnedDynamics(),
+            dynamics=told(self._learned_dynamics, context, LearnedDynamics()),
         )

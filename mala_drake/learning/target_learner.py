@@ -30,6 +30,7 @@ from mala_drake.messages import (
     SensitivitySource,
     Shape,
 )
+from mala_drake.optional_input import told
 from mala_drake.ward.routes import GOAL_DISTANCE
 from mala_drake.ward.shapes import ShapeDistances
 
@@ -146,8 +147,7 @@ class TargetLearner(LegLearner):
         return (*self._learner.target(self.learner_state(context), place), self._yaws[place])
 
     def _weights_told(self, context: Context) -> LearnedWeights:
-        connected = self._learned_weights.HasValue(context)
-        return self._learned_weights.Eval(context) if connected else LearnedWeights()
+        return told(self._learned_weights, context, LearnedWeights())
 
     def _update(self, context: Context, discrete_state: DiscreteValues) -> None:
         state, marks = self.learner_state(context), self._marks(context)

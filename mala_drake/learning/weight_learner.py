@@ -16,6 +16,7 @@ from mala_drake.learning.leg_learner import LegLearner
 from mala_drake.learning.translation_estimator import TranslationEstimator
 from mala_drake.learning.weight_estimator import WeightEstimator
 from mala_drake.messages import ActionEvaluation, DrivenLeg, LearnedTargets, LearnedWeights, Outcome
+from mala_drake.optional_input import told
 
 _logger = logging.getLogger(__name__)
 
@@ -111,10 +112,7 @@ class WeightLearner(LegLearner):
     def _target(self, context: Context, place: str) -> tuple[float, float, float]:
         """The pose that the controller drives to for a place, (0, 0, 0) for one that is not known."""
         pose = self._targets.get(place, (0.0, 0.0, 0.0))
-        if not self._learned_targets.HasValue(context):
-            return pose
-        told: LearnedTargets = self._learned_targets.Eval(context)
-        return told.pose(place, pose)
+        return told(self._learned_targets, context, LearnedTargets()).pose(place, pose)
 
     def _weights_told(self, context: Context) -> LearnedWeights:
         return self._learned(context)

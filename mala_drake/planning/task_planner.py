@@ -21,6 +21,7 @@ from mala_drake.messages import (
     Task,
     TaskReport,
 )
+from mala_drake.optional_input import told
 from mala_drake.planning.care_tasks import TASK_NAMES, CareTask
 from mala_drake.planning.leg_costs import LegCosts
 from mala_drake.planning.task_executive import Situation, TaskExecutive
@@ -154,6 +155,5 @@ class TaskPlanner(LeafSystem):
     def _situation(self, context: Context) -> Situation:
         x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
         preferences: Preferences = self._preferences.Eval(context)
-        connected = self._learned_costs.HasValue(context)
-        learned: LearnedCosts = self._learned_costs.Eval(context) if connected else LearnedCosts()
+        learned = told(self._learned_costs, context, LearnedCosts())
         return Situation(self._symbolic_state.Eval(context), (x, y, yaw), preferences.planning, learned)
