@@ -7,15 +7,28 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from mala_drake.errors import BadInput
 from mala_drake.resources import domains_folder, models_folder
 
 _DIGITS = 16  # Hexadecimal, of the SHA-256: enough to tell versions of one package apart.
 
 
-@cache
-def fingerprint() -> str:
-    """That of this package: 16 hexadecimal digits, the same in a checkout and in the wheel that is built from it."""
-    return fingerprint_of(Path(__file__).resolve().parent, models_folder(), domains_folder())
+def fingerprint(ward: str = "") -> str:
+    """That of this package: 16 hexadecimal digits, the same in a checkout and in the wheel that is built from it.
+
+    Args:
+        ward: path of a ward map of the user's own, which then counts too; empty if there is none.
+
+    Raises:
+        BadInput: when that file cannot be read.
+    """
+    if not ward:
+        return _of_this_package()
+    try:
+        content = Path(ward).read_bytes()
+    except OSError as error:
+        raise BadInput(ward, f"cannot be read ({error.strerror})", "a readable ward map") from None
+    return _short(hashlib.sha256(f"{_of_this_package()}\0{_digest(content)}\n".encode()))
 
 
 def fingerprint_of(package: Path, models: Path, domains: Path) -> str:
@@ -34,8 +47,21 @@ def fingerprint_of(package: Path, models: Path, domains: Path) -> str:
         found += [(f"{title}/{name}", path) for name, path in _files(folder)]
     total = hashlib.sha256()
     for name, path in sorted(found):
-        content = path.read_bytes().replace(b"\r\n", b"\n")
-        total.update(f"{name}\0{hashlib.sha256(content).hexdigest()}\n".encode())
+        total.update(f"{name}\0{_digest(path.read_bytes())}\n".encode())
+    return _short(total)
+
+
+@cache
+def _of_this_package() -> str:
+    return fingerprint_of(Path(__file__).resolve().parent, models_folder(), domains_folder())
+
+
+def _digest(content: bytes) -> str:
+    """That of a file's content, however its lines end."""
+    return hashlib.sha256(content.replace(b"\r\n", b"\n")).hexdigest()
+
+
+def _short(total: hashlib._Hash) -> str:
     return total.hexdigest()[:_DIGITS]
 
 

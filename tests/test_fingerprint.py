@@ -9,6 +9,7 @@ import pytest
 
 import mala_drake
 from mala_drake import fingerprint as mut
+from mala_drake.errors import BadInput
 from mala_drake.resources import domains_folder, models_folder
 
 FILES = {
@@ -65,6 +66,20 @@ def test_every_file_counts_with_its_name(tmp_path, usual, name):
     without = {other: content for other, content in FILES.items() if other != name}
     assert write(tmp_path / "without", without) != usual
     assert write(tmp_path / "renamed", without | {f"{name[:-4]}x{name[-4:]}": FILES[name]}) != usual
+
+
+def test_a_ward_map_of_ones_own_counts_by_its_content(tmp_path):
+    ward, moved = tmp_path / "own.ward.yaml", tmp_path / "moved.ward.yaml"
+    ward.write_bytes(b"title: first\n")
+    moved.write_bytes(b"title: first\r\n")
+    first = mut.fingerprint(str(ward))
+    assert first == mut.fingerprint(str(moved)) != mut.fingerprint()
+    assert len(first) == 16
+
+    ward.write_bytes(b"title: second\n")
+    assert mut.fingerprint(str(ward)) not in (first, mut.fingerprint())
+    with pytest.raises(BadInput, match=r"absent\.yaml: cannot be read"):
+        mut.fingerprint(str(tmp_path / "absent.yaml"))
 
 
 def test_that_of_the_package_is_that_of_a_copy(tmp_path):

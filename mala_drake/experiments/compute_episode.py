@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.experiments.stations import Stations
@@ -19,7 +19,7 @@ class EpisodeWork:
     scenario: Scenario
     episode: int
     carried: Carried
-    code: str = field(default_factory=fingerprint)
+    code: str
 
 
 _one_at_a_time = threading.Lock()
@@ -36,8 +36,9 @@ def compute_episode(work: EpisodeWork) -> tuple[str, Carried]:
         RuntimeError: this process has other code than the one that asks for the episode, for it is on another machine,
             or files were changed meanwhile.
     """
-    if work.code != fingerprint():
-        raise RuntimeError(f"other code or models here (fingerprint {fingerprint()}) than it was begun with")
+    here = fingerprint(work.scenario.ward)
+    if work.code != here:
+        raise RuntimeError(f"other code or models here (fingerprint {here}) than it was begun with")
     with _one_at_a_time:
         station = _stations(work.scenario).of_episode(work.episode)
         record, carried = simulate_episode(station, work.scenario, episode=work.episode, carried=work.carried)

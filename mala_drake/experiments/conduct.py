@@ -13,6 +13,7 @@ from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
 from mala_drake.experiments.executors import AbstractExecutor
 from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_folder import RunFolder
+from mala_drake.fingerprint import fingerprint
 
 
 class ExperimentWatcher(Protocol):
@@ -55,6 +56,7 @@ def conduct(
         BadInput: when a run's files cannot be read or written.
     """
     episodes = experiment.base.episodes
+    code = fingerprint(experiment.base.ward)
     waiting: deque[RunName] = deque()
     done = 0
     for run in experiment.runs:
@@ -68,7 +70,7 @@ def conduct(
 
     def submit(run: RunName) -> None:
         files = active[run]
-        executor.submit(run, EpisodeWork(experiment.scenario(run), files.episodes, files.carried))
+        executor.submit(run, EpisodeWork(experiment.scenario(run), files.episodes, files.carried, code))
 
     try:
         while waiting or active:

@@ -103,7 +103,7 @@ class Experiment:
         """Everything that decides what the runs come to."""
         return {
             "version": mala_drake.__version__,
-            "fingerprint": fingerprint(),
+            "fingerprint": fingerprint(self.base.ward),
             "experiment": self.name,
             "scenario": asdict(self.base),
             "conditions": copy.deepcopy(dict(self.conditions)),

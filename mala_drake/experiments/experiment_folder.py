@@ -46,11 +46,13 @@ def begun_in(folder: Path, *, resume: bool = False) -> Experiment | None:
 
 
 def _refuse_other_code(data: dict[str, Any], path: Path) -> None:
-    """Results of two states of the code are not those of one experiment.
+    """Results of two states of the code, or of the user's own ward map, are not those of one experiment.
 
     Whoever wrote no fingerprint is from before there were any: other code, too.
     """
-    begun, now = data.get("fingerprint"), fingerprint()
+    scenario = data.get("scenario")
+    ward = scenario.get("ward", "") if isinstance(scenario, dict) else ""
+    begun, now = data.get("fingerprint"), fingerprint(str(ward))
     if begun == now:
         return
     what = f"begun with other code or models (fingerprint {begun or 'not kept yet'}, version {data.get('version')})"

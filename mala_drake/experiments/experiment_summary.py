@@ -45,7 +45,7 @@ def summarise_experiment(experiment: Experiment, folder: Path, failures: Mapping
     summary: dict[str, Any] = plain(
         {
             "version": mala_drake.__version__,
-            "fingerprint": fingerprint(),
+            "fingerprint": fingerprint(scenario.ward),
             "experiment": experiment.name,
             "scenario": asdict(scenario) | {"patient": asdict(experiment.base.patient)},
             "seed": list(experiment.seeds),

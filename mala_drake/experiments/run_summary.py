@@ -35,7 +35,7 @@ def summarise(scenario: Scenario, records: Sequence[EpisodeRecord]) -> dict[str,
     summary: dict[str, Any] = plain(
         {
             "version": mala_drake.__version__,
-            "fingerprint": fingerprint(),
+            "fingerprint": fingerprint(scenario.ward),
             "scenario": asdict(scenario),
             "seed": scenario.random_seed,
             "totals": totals_of(records),

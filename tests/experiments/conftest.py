@@ -94,7 +94,7 @@ def whole_run() -> Callable[..., tuple[list[str], list[Carried]]]:
     def run(scenario: Scenario, episodes: int) -> tuple[list[str], list[Carried]]:
         lines, carried = [], [Carried()]
         for episode in range(episodes):
-            line, after = _fake_episode(EpisodeWork(scenario, episode, carried[-1]))
+            line, after = _fake_episode(EpisodeWork(scenario, episode, carried[-1], code=""))
             lines.append(line)
             carried.append(after)
         return lines, carried

@@ -9,6 +9,8 @@ import pytest
 
 from mala_drake.experiments import compute_episode as mut
 from mala_drake.experiments.episode import Carried
+from mala_drake.fingerprint import fingerprint
+from mala_drake.resources import models_folder
 from mala_drake.scenario import Scenario
 
 
@@ -27,7 +29,7 @@ def in_a_row():
     work, done = [], []
     carried = Carried()
     for episode in range(3):
-        work.append(mut.EpisodeWork(scenario(random_seed=2), episode, carried))
+        work.append(mut.EpisodeWork(scenario(random_seed=2), episode, carried, fingerprint()))
         line, carried = mut.compute_episode(work[-1])
         done.append((line, carried))
     return work, done
@@ -51,7 +53,7 @@ def test_the_stations_of_a_run_are_kept_for_its_next_episodes(in_a_row):
 def test_an_episode_is_the_same_in_another_process_that_has_just_computed_something_else(in_a_row):
     works, done = in_a_row
     elsewhere = pickle.loads(pickle.dumps(works[2]))
-    mut.compute_episode(mut.EpisodeWork(scenario(random_seed=5), 0, Carried()))
+    mut.compute_episode(mut.EpisodeWork(scenario(random_seed=5), 0, Carried(), fingerprint()))
     assert mut._newest.scenario != elsewhere.scenario  # So its station is built anew.
     line, carried = mut.compute_episode(elsewhere)
     assert without_timing(line) == without_timing(done[2][0])
@@ -60,5 +62,14 @@ def test_an_episode_is_the_same_in_another_process_that_has_just_computed_someth
 
 def test_other_code_than_it_was_begun_with_does_not_compute_it():
     work = mut.EpisodeWork(scenario(), 0, Carried(), code="0123456789abcdef")
+    with pytest.raises(RuntimeError, match="other code or models here"):
+        mut.compute_episode(work)
+
+
+def test_another_ward_map_of_ones_own_than_it_was_begun_with_does_not_compute_it(tmp_path):
+    ward = tmp_path / "own.ward.yaml"
+    ward.write_bytes((models_folder() / "care_center.ward.yaml").read_bytes())
+    work = mut.EpisodeWork(scenario(ward=str(ward)), 0, Carried(), fingerprint(str(ward)))
+    ward.write_text(ward.read_text() + "\n# Changed meanwhile.\n")
     with pytest.raises(RuntimeError, match="other code or models here"):
         mut.compute_episode(work)

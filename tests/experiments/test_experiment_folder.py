@@ -158,3 +158,20 @@ def test_a_folder_that_cannot_be_made_is_told_in_one_line(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInput, match="cannot be written"):
         begin(tmp_path / "file" / "results")
+
+
+def test_what_was_begun_with_another_ward_map_of_ones_own_is_not_gone_on_with(tmp_path):
+    ward = tmp_path / "own.ward.yaml"
+    ward.write_text("title: first\n")
+    experiment = dataclasses.replace(EXPERIMENT, base=Scenario(episodes=3, ward=str(ward)))
+    folder = tmp_path / "results"
+    begin(folder, experiment)
+    begin(folder, experiment, resume=True)
+
+    ward.write_text("title: second\n")
+    with pytest.raises(BadInput, match="other code or models"):
+        begin(folder, experiment, resume=True)
+
+    ward.unlink()
+    with pytest.raises(BadInput, match=r"own\.ward\.yaml: cannot be read"):
+        begin(folder, experiment, resume=True)

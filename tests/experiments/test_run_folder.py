@@ -51,7 +51,7 @@ def go_on(path, fake_episode):
     """What a conductor does: brings the run from where it is to its end."""
     with mut.RunFolder(path) as files:
         while files.episodes < EPISODES:
-            files.append(*fake_episode(EpisodeWork(SCENARIO, files.episodes, files.carried)))
+            files.append(*fake_episode(EpisodeWork(SCENARIO, files.episodes, files.carried, code="")))
 
 
 def content(path):
@@ -183,7 +183,7 @@ def test_a_full_disk_is_told_in_one_line_and_loses_nothing(done, fake_episode, m
     with monkeypatch.context() as patch:
         patch.setattr("mala_drake.experiments.durable_files.os", Full(calls, 0.3))
         with pytest.raises(BadInput, match="No space left"):
-            files.append(*fake_episode(EpisodeWork(SCENARIO, files.episodes, files.carried)))
+            files.append(*fake_episode(EpisodeWork(SCENARIO, files.episodes, files.carried, code="")))
     files.close()
     go_on(done, fake_episode)
     assert content(done) == lines
