@@ -55,16 +55,13 @@ class TargetRun:
     def deliveries(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """(done, tried) of the episodes that led to the place before the mismatch was gone for good, and after.
 
-        An episode in which it went is one before.
+        An episode in which it went is one before; where it never went, all are.
         """
         episodes = [record for record in self.run.episodes if _of_place(record, self.place)]
-        counted, learned = 0, len(episodes)
-        entries = self.entries
-        for number, record in enumerate(episodes):
-            if not any(is_mismatch(entry) for entry in entries[counted:]):
-                learned = number
-                break
-            counted += len(_of_place(record, self.place))
+        learned = len(episodes)
+        if self.updates_until_gone is not None:
+            while learned and not any(map(is_mismatch, _of_place(episodes[learned - 1], self.place))):
+                learned -= 1
         before, after = episodes[:learned], episodes[learned:]
         return _done(before), _done(after)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -59,6 +60,17 @@ def test_deliveries_are_told_apart_by_when_the_mismatch_went(runs):
     assert pantry.deliveries() == ((0, 1), (1, 1))
     assert bed.deliveries() == ((1, 1), (2, 2))
     assert [run.deliveries() for run in runs["outer_loop_only"]] == [((0, 1), (0, 0)), ((1, 1), (0, 0))]
+
+
+@pytest.mark.parametrize("episodes", [1, 2, 3])
+def test_after_a_mismatch_that_never_went_there_is_nothing(runs, episodes):
+    pantry = runs["full"][0]
+    seen, blocked = pantry.entries[0], {**pantry.entries[0], "outcome": "blocked", "mismatch": 0.0}
+    record = pantry.run.episodes[0]
+    records = [replace(record, displaced_legs=[leg]) for leg in (seen, blocked, blocked)[-episodes:]]
+    run = replace(pantry, run=replace(pantry.run, episodes=tuple(records)))
+    assert run.updates_until_gone is None
+    assert run.deliveries() == ((episodes, episodes), (0, 0))
 
 
 def test_the_displacement_is_that_of_the_runs_own_seed(tmp_path, folder):
