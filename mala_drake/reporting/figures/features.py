@@ -28,8 +28,8 @@ def feature_picture(results: Results) -> Iterator[Picture]:
     for row, task in zip(grid, tasks, strict=True):
         for axes, criterion in zip(row, CRITERIA, strict=True):
             for line, profile in enumerate(profiles):
-                values = [r.features[criterion] for run in results.of(results.main, profile) for r in run.of_task(task)]
-                _draw_line(axes, line, values, profile_color(profile))
+                done = [r for run in results.of(results.main, profile) for r in run.of_task(task) if r.success]
+                _draw_line(axes, line, [record.features[criterion] for record in done], profile_color(profile))
         row[0].set_ylabel(title_of(task), weight="bold")
     for axes, criterion in zip(grid[0], CRITERIA, strict=True):
         axes.set_title(title_of(criterion), color=CRITERION_COLORS[criterion])
@@ -43,8 +43,8 @@ def feature_picture(results: Results) -> Iterator[Picture]:
         axes.grid(axis="y", visible=False)
         axes.spines["left"].set_visible(False)
     caption = (
-        "Features measured on the executed trajectories, 0 best and 1 worst, over all episodes and seeds. A tick is an "
-        "episode, a bar reaches between the quartiles, a ring is the median."
+        "Features measured on the executed trajectories, 0 best and 1 worst, of all seeds and of all episodes in which "
+        "the task was done. A tick is an episode, a bar reaches between the quartiles, a ring is the median."
     )
     yield Picture("features", "What the executed plans cost", caption, figure)
 
