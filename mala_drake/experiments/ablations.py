@@ -54,7 +54,7 @@ ABLATIONS: Mapping[str, tuple[Changes, str]] = MappingProxyType(
         "missing_ratings": ({"patient": {"missing": 0.3}}, "three criteria in ten are left unrated"),
         "drifting_patient": (
             {"patient": {"earlier_weights": [0.1, 0.1, 0.3, 0.1, 0.4], "earlier_episodes": 10}},
-            "for the first ten episodes the patient wants something else",
+            "for the first ten episodes the patient wants something else; what is learned is counted since",
         ),
         "dirichlet_initial_weights": (
             {"learner": {"name": _GRADIENT, "random_initial_weights": True}},

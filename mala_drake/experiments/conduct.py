@@ -28,8 +28,8 @@ class ExperimentWatcher(Protocol):
     def on_episode(self, run: RunName, episode: int) -> None:
         """An episode of a run is written."""
 
-    def on_run(self, run: RunName, records: Sequence[EpisodeRecord]) -> None:
-        """A run has come to its end."""
+    def on_run(self, run: RunName, records: Sequence[EpisodeRecord], *, earlier_episodes: int) -> None:
+        """A run has come to its end; so many of its episodes came before a change of the patient's mind."""
 
     def on_failure(self, run: RunName, error: str) -> None:
         """A run cannot go on; what it has written stays, and can be gone on from."""
@@ -89,7 +89,8 @@ def conduct(
                 if files.episodes < episodes:
                     submit(run)
                     continue
-                watcher.on_run(run, read_episodes(files.path / EPISODES_FILE)[0])
+                earlier = experiment.scenario(run).patient.earlier_episodes
+                watcher.on_run(run, read_episodes(files.path / EPISODES_FILE)[0], earlier_episodes=earlier)
             active.pop(run).close()
     finally:
         for files in active.values():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,11 @@ from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_summary import timing_of, totals_of
 from mala_drake.experiments.target_summary import target_figures
 from mala_drake.fingerprint import fingerprint
-from mala_drake.learning.information_bound import efficiency
 from mala_drake.preferences import CRITERIA
-from mala_drake.reporting.bound_results import bounds_of
+from mala_drake.reporting.bound_results import final_error_over_bound
 from mala_drake.reporting.profile_results import ProfileResults
 from mala_drake.reporting.quantiles import Spread
 from mala_drake.reporting.results import Run
-from mala_drake.scenario import Scenario
 
 
 def summarise_experiment(experiment: Experiment, folder: Path, failures: Mapping[RunName, str]) -> dict[str, Any]:
@@ -35,9 +33,9 @@ def summarise_experiment(experiment: Experiment, folder: Path, failures: Mapping
         folder: of its results.
         failures: why runs have not come to their end.
     """
-    runs = [run for name in experiment.runs if (run := _read(folder, name))]
+    runs = [run for name in experiment.runs if (run := _read(experiment, folder, name))]
     by_condition = {
-        condition: _condition(experiment, [run for run in runs if run.condition == condition])
+        condition: _condition(experiment, condition, [run for run in runs if run.condition == condition])
         for condition in experiment.conditions
     }
     main = next(iter(experiment.conditions))
@@ -59,33 +57,36 @@ def summarise_experiment(experiment: Experiment, folder: Path, failures: Mapping
     return summary
 
 
-def _read(folder: Path, name: RunName) -> Run | None:
+def _read(experiment: Experiment, folder: Path, name: RunName) -> Run | None:
     records, _ = read_episodes(folder / name.folder / EPISODES_FILE)
-    return Run(name.condition, name.profile, name.seed, tuple(records)) if records else None
+    earlier = experiment.scenario(name).patient.earlier_episodes
+    return Run(name.condition, name.profile, name.seed, tuple(records), earlier) if records else None
 
 
-def _condition(experiment: Experiment, runs: Sequence[Run]) -> dict[str, Any]:
+def _condition(experiment: Experiment, condition: str, runs: Sequence[Run]) -> dict[str, Any]:
     """Totals and figures by profile of the runs of one condition."""
     records = [record for run in runs for record in run.episodes]
-    profiles = []
-    for profile in experiment.profiles:
-        of_profile = tuple(run for run in runs if run.profile == profile)
-        if of_profile:
-            scenario = experiment.scenario(RunName(of_profile[0].condition, profile, of_profile[0].seed))
-            profiles.append(
-                (ProfileResults(scenario.profile_name, profile, of_profile, scenario.true_weights), scenario)
-            )
+    scenarios = {
+        profile: experiment.scenario(RunName(condition, profile, experiment.seeds[0]))
+        for profile in experiment.profiles
+    }
+    profiles = [
+        ProfileResults(condition, profile, of_profile, scenario.true_weights)
+        for profile, scenario in scenarios.items()
+        if (of_profile := tuple(run for run in runs if run.profile == profile))
+    ]
+    known = [(run, scenarios[run.profile].true_weights) for figures in profiles for run in figures.runs]
+    noise = scenarios[experiment.profiles[0]].patient.noise
+    right = [figures.dominant_right for figures in profiles if figures.dominant_right is not None]
     totals = {
         "runs": len(runs),
-        "converged": sum(figures.converged for figures, _ in profiles),
-        "dominant_right": sum(figures.dominant_right or 0 for figures, _ in profiles),
-        "error_over_bound": _error_over_bound(
-            [(run, scenario) for figures, scenario in profiles for run in figures.runs]
-        ),
+        "converged": sum(figures.converged for figures in profiles),
+        "dominant_right": sum(right) if right or not profiles else None,
+        "error_over_bound": final_error_over_bound(known, noise),
         "prediction_error": _prediction_error(records),
         **totals_of(records),
     }
-    by_profile = {figures.profile: _profile(figures) for figures, _ in profiles}
+    by_profile = {figures.profile: _profile(figures) for figures in profiles}
     targets = target_figures([run.episodes for run in runs])
     return {"totals": totals, "profiles": by_profile, **({"targets": targets} if targets else {})}
 
@@ -125,22 +126,3 @@ def _prediction_error(records: Sequence[EpisodeRecord]) -> dict[str, float | Non
         else None
         for criterion in CRITERIA
     }
-
-
-def _error_over_bound(runs: Sequence[tuple[Run, Scenario]]) -> float | None:
-    """Root mean square, over runs and weights, of final error over the least standard deviation that was possible.
-
-    It is for the features that were really seen, with the simplex constraint. None where there is no such bound: of
-    ratings without noise, or when too little was rated in some run.
-    """
-    runs = [(_since_change_of_mind(run, scenario), scenario) for run, scenario in runs]
-    if not runs or any(scenario.patient.noise == 0.0 or not run.episodes for run, scenario in runs):
-        return None
-    errors = [np.subtract(run.final.weights_after, scenario.true_weights) for run, scenario in runs]
-    bounds = [bounds_of(run, scenario.patient.noise)[-1] for run, scenario in runs]
-    return efficiency(errors, bounds) if np.isfinite(bounds).all() else None
-
-
-def _since_change_of_mind(run: Run, scenario: Scenario) -> Run:
-    """The run without the episodes that tell nothing about what the patient wants in the end."""
-    return replace(run, episodes=run.episodes[scenario.patient.earlier_episodes :])

@@ -10,8 +10,8 @@ import numpy as np
 
 import mala_drake
 from mala_drake.experiments.episode_record import EpisodeRecord, plain
+from mala_drake.experiments.learning_figures import learning_figures
 from mala_drake.fingerprint import fingerprint
-from mala_drake.learning.convergence import convergence_episode
 from mala_drake.scenario import Scenario
 
 SUMMARY_FILE = "summary.json"
@@ -26,9 +26,7 @@ def summarise(scenario: Scenario, records: Sequence[EpisodeRecord]) -> dict[str,
     """
     successes = sum(record.success for record in records)
     profile = {
-        "convergence_episode": convergence_episode(record.distance_to_true for record in records if record.rated),
-        "best_distance": min(record.distance_to_true for record in records),
-        "final_distance": records[-1].distance_to_true,
+        **asdict(learning_figures(records, earlier_episodes=scenario.patient.earlier_episodes)),
         "success_rate": successes / len(records),
         "plan_variants": sorted({record.plan_variant for record in records if record.success}),
     }

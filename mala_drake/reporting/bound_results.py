@@ -23,7 +23,7 @@ def rating_noise(results: Results, condition: str) -> float | None:
 def bounds_of(run: Run, noise: float) -> NDArray[np.float64]:
     """The bound of each weight after each episode, shape (episodes, 5), from the features that had been rated by then.
 
-    Infinite as long as they do not tell all of the weights.
+    Infinite as long as they do not tell all of the weights. What was rated before a change of mind tells of none.
     """
     rated = np.array(
         [
@@ -34,6 +34,7 @@ def bounds_of(run: Run, noise: float) -> NDArray[np.float64]:
             for record in run.episodes
         ]
     )
+    rated[: run.earlier_episodes] = math.nan
     return np.array([weight_bound(rated[: n + 1], noise) for n in range(len(rated))])
 
 
@@ -42,13 +43,34 @@ def errors_of(run: Run, true_weights: Sequence[float]) -> NDArray[np.float64]:
     return np.array([record.weights_after for record in run.episodes]) - np.asarray(true_weights, dtype=float)
 
 
+def known_runs(results: Results, condition: str) -> list[tuple[Run, tuple[float, ...]]]:
+    """The runs of a condition whose patients' wishes are known, with these."""
+    return [(run, true) for run in results.of(condition) if (true := results.true_weights(run.profile)) is not None]
+
+
+def final_error_over_bound(runs: Sequence[tuple[Run, Sequence[float]]], noise: float | None) -> float | None:
+    """Root mean square, over runs and weights, of error over bound after the last episode of each run.
+
+    None where there is no such bound: of no runs, of ratings without noise, or when too little was rated in some run.
+
+    Args:
+        runs: with the true weights of their patients.
+        noise: standard deviation of a rating; None and 0 are none.
+    """
+    if not runs or not noise:
+        return None
+    bounds = [bounds_of(run, noise)[-1] for run, _ in runs]
+    errors = [errors_of(run, true)[-1] for run, true in runs]
+    return efficiency(errors, bounds) if np.isfinite(bounds).all() else None
+
+
 def error_over_bound(results: Results, condition: str) -> NDArray[np.float64]:
     """Root mean square of error over bound after each episode, over runs and weights; NaN before the bound is finite.
 
     Only episodes that all runs have count, and only patients whose wishes are known. Empty where there is no bound.
     """
     noise = rating_noise(results, condition)
-    known = [(run, true) for run in results.of(condition) if (true := results.true_weights(run.profile)) is not None]
+    known = known_runs(results, condition)
     if noise is None or not known:
         return np.empty(0)
     length = min(len(run.episodes) for run, _ in known)

@@ -77,9 +77,8 @@ def _figures_table(title: str, totals: dict[str, Any], timing: dict[str, Any], f
         table.add_row("worst end of a leg", f"{worst}, {totals['max_terminal_speed_m_s']:.3f} m/s")
     table.add_row("plans that delivered", "\n".join(figures["plan_variants"]) or "none")
     table.add_row("rated episodes to convergence", str(figures["convergence_episode"] or "not yet converged"))
-    table.add_row(
-        "distance to true preferences", f"{figures['final_distance']:.3f} (best {figures['best_distance']:.3f})"
-    )
+    final, best = (_number(figures[name], 3) for name in ("final_distance", "best_distance"))
+    table.add_row("distance to true preferences", f"{final} (best {best})")
     stopped = f", {n} stopped early" if (n := totals["mpc_not_converged"]) else ""
     table.add_row("MPC solves", f"{totals['mpc_solves']}, {totals['mpc_failures']} failed{stopped}")
     table.add_row("median time of a solve", f"{timing['mpc_median_ms']:.1f} ms")

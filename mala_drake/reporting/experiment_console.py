@@ -13,7 +13,7 @@ from rich.text import Text
 
 from mala_drake.experiments.episode_record import EpisodeRecord
 from mala_drake.experiments.experiment import MAIN, RunName
-from mala_drake.learning.convergence import convergence_episode
+from mala_drake.experiments.learning_figures import learning_figures
 from mala_drake.reporting.progress_console import ProgressConsole
 
 _SPEED_WINDOW = 1800.0  # Seconds over which the speed is averaged that the time left is told from.
@@ -53,9 +53,9 @@ class ExperimentConsole(ProgressConsole):
         """Moves the bar."""
         self._progress.advance(self._bar)
 
-    def on_run(self, run: RunName, records: Sequence[EpisodeRecord]) -> None:
+    def on_run(self, run: RunName, records: Sequence[EpisodeRecord], *, earlier_episodes: int) -> None:
         """Prints a line for a run that has come to its end."""
-        converged = convergence_episode(record.distance_to_true for record in records if record.rated)
+        converged = learning_figures(records, earlier_episodes=earlier_episodes).convergence_episode
         delivered = sum(record.success for record in records)
         line = Text.assemble(
             f"{run}: ",
@@ -95,7 +95,7 @@ def _cells(figures: dict[str, Any]) -> tuple[str, ...]:
     return (
         f"{figures['converged']}/{figures['runs']}",
         "never" if figures["convergence_episode"] is None else f"{figures['convergence_episode']:g}",
-        f"{figures['final_distance']:.3f}",
+        "-" if figures["final_distance"] is None else f"{figures['final_distance']:.3f}",
         "-" if right is None else f"{right}/{figures['runs']}",
         str(len(figures["plan_variants"])),
         f"{figures['successes']}/{figures['episodes']}",

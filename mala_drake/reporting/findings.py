@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mala_drake.learning.convergence import CONVERGED_DISTANCE
-from mala_drake.reporting.bound_results import error_over_bound
+from mala_drake.reporting.bound_results import final_error_over_bound, known_runs, rating_noise
 from mala_drake.reporting.paper_results import PAPER_RESULTS
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import quantile
@@ -35,9 +35,9 @@ def headline(results: Results) -> tuple[Figure, ...]:
     episodes, successes = sum(each.episodes for each in figures), sum(each.successes for each in figures)
     collisions = sum(each.collisions for each in figures)
     converged = sum(each.converged for each in figures)
-    known = [each for each in figures if each.true_weights is not None]
+    known = [each for each in figures if each.dominant_right is not None]
     asked, right = sum(len(each.runs) for each in known), sum(each.dominant_right or 0 for each in known)
-    final = quantile((run.final.distance_to_true for run in runs), 0.5)
+    final = quantile((run.learning.final_distance for run in runs), 0.5)
     found = [
         Figure(f"{successes}/{episodes}", "tasks done on the physics", successes == episodes),
         Figure(str(collisions), "collisions", collisions == 0),
@@ -94,7 +94,7 @@ def _problems(results: Results, condition: str) -> Iterator[str]:
     if late:
         at = _places([_run(run) for run in late])
         yield f"{under}{len(late)} of {_count(len(runs), 'run')} did not converge to d ≤ {CONVERGED_DISTANCE:g}: {at}."
-    wrong = sum(len(each.runs) - (each.dominant_right or 0) for each in figures if each.true_weights is not None)
+    wrong = sum(len(each.runs) - (each.dominant_right or 0) for each in figures if each.dominant_right is not None)
     if wrong:
         in_runs = f"{wrong} of {_count(len(runs), 'run')}"
         yield f"{under}In {in_runs} the greatest weight is not what matters most to the patient."
@@ -123,7 +123,7 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
         finals = _range([each.final_distance.median for each in figures], 3)
         learner = words(results.learner(condition)).capitalize()
         text = f"{learner}: {told} and a final distance of {finals} (medians by patient)"
-        ratio = _final_ratio(results, condition)
+        ratio = final_error_over_bound(known_runs(results, condition), rating_noise(results, condition))
         sentences.append(text + ("." if ratio is None else f"; final error {ratio:.2f} times the information bound."))
     reported = [PAPER_RESULTS[profile] for profile in results.profiles if profile in PAPER_RESULTS]
     if reported:
@@ -135,12 +135,6 @@ def learning_sentences(results: Results) -> tuple[str, ...]:
 
 def _episodes(count: str) -> str:
     return f"{count} rated episode" + "s" * (count != "1")
-
-
-def _final_ratio(results: Results, condition: str) -> float | None:
-    """Error over bound at the end; None where it cannot be told."""
-    ratios = error_over_bound(results, condition)
-    return float(ratios[-1]) if ratios.size and math.isfinite(ratios[-1]) else None
 
 
 def _range(values: Sequence[float], digits: int) -> str:

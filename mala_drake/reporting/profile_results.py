@@ -6,9 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
-from mala_drake.learning.convergence import convergence_episode
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.quantiles import Spread, spread
 from mala_drake.reporting.results import Results, Run
@@ -30,12 +28,10 @@ class ProfileResults:
     runs: tuple[Run, ...]
     true_weights: tuple[float, ...] | None
 
-    @cached_property
+    @property
     def convergence_episodes(self) -> tuple[int | None, ...]:
         """The number of rated episodes after which each run had converged, None for never."""
-        return tuple(
-            convergence_episode(record.distance_to_true for record in run.episodes if record.rated) for run in self.runs
-        )
+        return tuple(run.learning.convergence_episode for run in self.runs)
 
     @property
     def converged(self) -> int:
@@ -50,24 +46,22 @@ class ProfileResults:
     @property
     def best_distance(self) -> Spread:
         """Of the least distance in each run."""
-        return spread(min(record.distance_to_true for record in run.episodes) for run in self.runs)
+        return spread(run.learning.best_distance for run in self.runs)
 
     @property
     def final_distance(self) -> Spread:
         """Of the distance after each run's last episode."""
-        return spread(run.final.distance_to_true for run in self.runs)
+        return spread(run.learning.final_distance for run in self.runs)
 
     @property
     def dominant_right(self) -> int | None:
-        """How many runs end with the greatest weight on the patient's own dominant criterion."""
-        if self.true_weights is None:
+        """How many runs end with the greatest weight on a criterion that matters most to the patient.
+
+        None where nobody knows what does, and where everything matters alike.
+        """
+        if self.true_weights is None or len(wanted := dominant(self.true_weights)) == len(CRITERIA):
             return None
-        wanted = CRITERIA.index(dominant(self.true_weights))
-        # Even weights name no criterion, not the first one.
-        return sum(
-            all(run.final.weights_after[wanted] > weight for weight in _without(run.final.weights_after, wanted))
-            for run in self.runs
-        )
+        return sum(dominant(run.final.weights_after) <= wanted for run in self.runs)
 
     @property
     def episodes(self) -> int:
@@ -86,18 +80,23 @@ class ProfileResults:
 
     @property
     def cost(self) -> Spread:
-        """Of what an average episode of each run cost the patient: w*·f, the true weights on the measured features."""
+        """Of what an average episode of each run cost the patient: w*·f, the true weights on the measured features.
+
+        Only of episodes in which the task was done, since a change of mind; runs without any are left out.
+        """
         true = self.true_weights
         if true is None:
             return spread(())
+        done = [[record for record in run.episodes[run.earlier_episodes :] if record.success] for run in self.runs]
         return spread(
             sum(
                 weight * record.features[criterion]
-                for record in run.episodes
+                for record in records
                 for weight, criterion in zip(true, CRITERIA, strict=True)
             )
-            / len(run.episodes)
-            for run in self.runs
+            / len(records)
+            for records in done
+            if records
         )
 
     def variants(self, task: str | None = None) -> Counter[str]:
@@ -122,10 +121,7 @@ def profile_results(results: Results, condition: str) -> tuple[ProfileResults, .
     )
 
 
-def _without(weights: Sequence[float], index: int) -> list[float]:
-    return [weight for i, weight in enumerate(weights) if i != index]
-
-
-def dominant(weights: Sequence[float]) -> str:
-    """The criterion of the greatest weight."""
-    return CRITERIA[max(range(len(CRITERIA)), key=weights.__getitem__)]
+def dominant(weights: Sequence[float]) -> frozenset[str]:
+    """The criteria of the greatest weight: one, or several where weights are equal."""
+    greatest = max(weights)
+    return frozenset(criterion for criterion, weight in zip(CRITERIA, weights, strict=True) if weight == greatest)

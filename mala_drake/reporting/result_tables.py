@@ -51,7 +51,7 @@ def convergence_table(results: Results) -> Table:
         "from 0, and one is added to its figures. Best and final d: median (quartiles) over seeds; in the paper, mean "
         "± standard deviation, and mean. Dominant counts the runs in which the greatest weight is the right one. "
         "Plans counts the variants executed to their end; the paper's table and text differ."
-    )
+    ) + changes_of_mind(results, compared_conditions(results))
     return Table("convergence", caption, _HEADINGS, tuple(groups))
 
 
@@ -59,6 +59,18 @@ def compared_conditions(results: Results) -> tuple[str, ...]:
     """The main condition, and the paper's learner where it is there and not the main one."""
     others = [PAPERS_LEARNER] if PAPERS_LEARNER in results.conditions and results.main != PAPERS_LEARNER else []
     return (results.main, *others)
+
+
+def changes_of_mind(results: Results, conditions: Sequence[str]) -> str:
+    """What a caption adds where patients change their minds: which figures are of the time since."""
+    changing = [name for name in conditions if any(run.earlier_episodes for run in results.of(name))]
+    if not changing:
+        return ""
+    under = " and ".join(words(results.learner(name)) for name in changing)
+    return (
+        f" Under {under} the patient changes its mind: convergence, distances and costs are counted from the first "
+        "episode after that."
+    )
 
 
 def _row(figures: ProfileResults, results: Results) -> Row:
@@ -96,7 +108,7 @@ def _total_row(figures: Sequence[ProfileResults], results: Results) -> Row:
     runs = sum(len(each.runs) for each in figures)
     known = [each for each in figures if each.dominant_right is not None]
     right = sum(each.dominant_right or 0 for each in known)
-    distance = spread(run.final.distance_to_true for each in figures for run in each.runs)
+    distance = spread(run.learning.final_distance for each in figures for run in each.runs)
     return (
         words(results.learner(figures[0].condition)),
         f"{sum(each.converged for each in figures)}/{runs}",
@@ -144,7 +156,7 @@ def condition_table(results: Results) -> Table | None:
                 str(runs),
                 f"{sum(each.converged for each in figures)}/{runs}",
                 counts(_convergence(figures)),
-                distances(spread(run.final.distance_to_true for each in figures for run in each.runs)),
+                distances(spread(run.learning.final_distance for each in figures for run in each.runs)),
                 *(
                     number(of_profile[profile].final_distance.median, 3) if profile in of_profile else NONE
                     for profile in told_apart
@@ -157,8 +169,9 @@ def condition_table(results: Results) -> Table | None:
         )
     caption = (
         "Each condition over all its runs: medians (quartiles), final d by patient as medians. Cost is w*·f, the true "
-        "weights on the measured features, of an average episode: the median over patients of the median over seeds."
-    )
+        "weights on the measured features, of an average episode in which the task was done: the median over patients "
+        "of the median over seeds."
+    ) + changes_of_mind(results, results.conditions)
     return Table("conditions", caption, headings, (Group(tuple(rows[:1])), Group(tuple(rows[1:]))))
 
 

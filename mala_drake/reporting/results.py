@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from mala_drake.errors import BadInput
 from mala_drake.experiments.episode_reader import read_episodes
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeRecord
 from mala_drake.experiments.experiment import MAIN, RunName
+from mala_drake.experiments.learning_figures import LearningFigures, learning_figures
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.preferences import CRITERIA
 from mala_drake.reporting.plan import missing_beside_others, missing_from_plan, read_plan, scenarios_of
@@ -22,12 +23,21 @@ _MAIN_NAMES = ("full", "default", "main", "posterior")  # What an experiment wit
 
 @dataclass(frozen=True)
 class Run:
-    """One run: a patient and a seed under a condition, with at least one episode, in their order."""
+    """One run: a patient and a seed under a condition, with at least one episode, in their order.
+
+    `earlier_episodes` is how many of the first ones came before a change of the patient's mind.
+    """
 
     condition: str
     profile: str
     seed: int
     episodes: tuple[EpisodeRecord, ...]
+    earlier_episodes: int = 0
+
+    @cached_property
+    def learning(self) -> LearningFigures:
+        """How well the patient's wishes were learned, since a change of mind if there was one."""
+        return learning_figures(self.episodes, earlier_episodes=self.earlier_episodes)
 
     @property
     def final(self) -> EpisodeRecord:
@@ -118,7 +128,16 @@ def load_results(folder: Path) -> Results:
     runs.sort(key=lambda run: (conditions.index(run.condition), profiles.index(run.profile), run.seed))
     lengths = {RunName(run.condition, run.profile, run.seed): len(run.episodes) for run in runs}
     notes += missing_from_plan(plan, lengths) if plan else missing_beside_others(lengths)
-    return Results(folder.resolve().name, tuple(runs), scenarios_of(folder, plan, sorted(found), notes), tuple(notes))
+    scenarios = scenarios_of(folder, plan, sorted(found), notes)
+    runs = [replace(run, earlier_episodes=_earlier_episodes(scenarios.get(run.condition, {}))) for run in runs]
+    return Results(folder.resolve().name, tuple(runs), scenarios, tuple(notes))
+
+
+def _earlier_episodes(scenario: Mapping[str, Any]) -> int:
+    """How many episodes come before a change of mind, as far as the folder tells it."""
+    patient = scenario.get("patient")
+    told = patient.get("earlier_episodes") if isinstance(patient, dict) else None
+    return max(told, 0) if isinstance(told, int) else 0
 
 
 def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:

@@ -95,7 +95,7 @@ def target_condition_table(results: Results, ward: Ward) -> Table:
                 number(delivered.median, 0),
                 f"{number(quantile(finals, 0.5), 2)} ({number(quantile(finals, 1.0), 2)})",
                 number(sum(record.mismatches for record in records) / len(records), 1),
-                number(quantile((run.final.distance_to_true for run in runs), 0.5), 3),
+                number(quantile((run.learning.final_distance for run in runs), 0.5), 3),
                 str(sum(record.collisions for record in records)),
             )
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
 
@@ -56,6 +57,7 @@ class ScrambledExecutor(AbstractExecutor):
 class Notes:
     def __init__(self):
         self.started, self.episodes, self.runs, self.failures = None, [], {}, {}
+        self.earlier = {}
 
     def on_start(self, *, runs, episodes, done):
         self.started = runs, episodes, done
@@ -63,8 +65,8 @@ class Notes:
     def on_episode(self, run, episode):
         self.episodes.append((run, episode))
 
-    def on_run(self, run, records):
-        self.runs[run] = records
+    def on_run(self, run, records, *, earlier_episodes):
+        self.runs[run], self.earlier[run] = records, earlier_episodes
 
     def on_failure(self, run, error):
         self.failures[run] = error
@@ -109,6 +111,14 @@ def test_the_watcher_is_told_each_episode_and_each_run_once(tmp_path, fake_episo
         run: [0, 1, 2] for run in EXPERIMENT.runs
     }
     assert notes.failures == {}
+
+
+def test_the_watcher_is_told_how_many_episodes_came_before_a_change_of_mind(tmp_path, fake_episode):
+    drift = {"patient": {"earlier_weights": [0.2] * 5, "earlier_episodes": 2}}
+    experiment = replace(EXPERIMENT, conditions={"full": {}, "drift": drift}, profiles=("safety_first",), seeds=(0,))
+    notes = Notes()
+    mut.conduct(experiment, tmp_path, SerialExecutor(fake_episode), watcher=notes)
+    assert {run.condition: earlier for run, earlier in notes.earlier.items()} == {"full": 0, "drift": 2}
 
 
 BAD = RunName("", "safety_first", 7)

@@ -125,10 +125,26 @@ def test_only_what_was_rated_since_a_change_of_mind_can_tell_what_is_wanted(tmp_
     experiment = Experiment("ablations", base, {"drift": {}}, profiles=("speed_oriented",), seeds=(0,))
     run = experiment.runs[0]
     (tmp_path / run.folder).mkdir(parents=True)
-    records = [episode_record(episode=n, weights_after=list(LEARNED[0])) for n in range(3)]
+    distances = (0.1, 0.1, 0.2)
+    records = [
+        episode_record(episode=n, weights_after=list(LEARNED[0]), distance_to_true=distances[n]) for n in range(3)
+    ]
     (tmp_path / run.folder / "episodes.jsonl").write_text("".join(each.to_json() + "\n" for each in records))
     bound = 0.1 / (4 * 0.5) * np.sqrt(0.8)
     expected = np.sqrt(np.mean(np.square((np.array(LEARNED[0]) - WISHES) / bound)))
     assert mut.summarise_experiment(experiment, tmp_path, {})["totals"]["error_over_bound"] == pytest.approx(expected)
+    assert mut.summarise_experiment(experiment, tmp_path, {})["totals"]["converged"] == 0
     base.patient.earlier_episodes = 3
     assert mut.summarise_experiment(experiment, tmp_path, {})["totals"]["error_over_bound"] is None
+
+
+def test_where_everything_matters_alike_nothing_can_be_dominant(tmp_path, episode_record):
+    base = Scenario(episodes=1)
+    base.patient.true_weights = [0.2] * 5
+    experiment = Experiment("convergence", base, {"": {}}, profiles=("custom",), seeds=(0,))
+    (tmp_path / experiment.runs[0].folder).mkdir(parents=True)
+    (tmp_path / experiment.runs[0].folder / "episodes.jsonl").write_text(
+        episode_record(profile="custom").to_json() + "\n"
+    )
+    summary = mut.summarise_experiment(experiment, tmp_path, {})
+    assert summary["totals"]["dominant_right"] is summary["profiles"]["custom"]["dominant_right"] is None

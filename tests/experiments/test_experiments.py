@@ -37,7 +37,7 @@ class Nobody:
     def on_episode(self, run, episode):
         pass
 
-    def on_run(self, run, records):
+    def on_run(self, run, records, *, earlier_episodes):
         pass
 
     def on_failure(self, run, error):

@@ -181,6 +181,17 @@ def test_a_learner_that_never_comes_near_has_not_converged():
     assert figures["convergence_episode"] is None
 
 
+def test_what_is_learned_is_counted_since_a_change_of_mind():
+    scenario = Scenario(episodes=4)
+    scenario.patient.earlier_weights, scenario.patient.earlier_episodes = [0.2] * 5, 2
+    records = [episode(0.05), episode(0.05), episode(0.4), episode(0.14)]
+    figures = mut.summarise(scenario, records)["profiles"]["speed_oriented"]
+    assert (figures["convergence_episode"], figures["best_distance"], figures["final_distance"]) == (2, 0.14, 0.14)
+    assert figures["success_rate"] == 1.0
+    figures = mut.summarise(scenario, records[:2])["profiles"]["speed_oriented"]
+    assert (figures["convergence_episode"], figures["best_distance"], figures["final_distance"]) == (None, None, None)
+
+
 def test_only_plans_that_delivered_count_as_variants():
     records = [episode(0.3, variant="b"), episode(0.3, variant="a"), episode(0.3, variant="c", success=False)]
     summary = mut.summarise(Scenario(), records)

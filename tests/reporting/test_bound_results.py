@@ -56,6 +56,38 @@ def test_what_was_not_rated_tells_nothing(tmp_path, simulate_results):
     assert list(np.isfinite(mut.error_over_bound(results, ""))) == [False, False, True, True]
 
 
+def test_ratings_by_earlier_wishes_tell_nothing_of_the_present_ones(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=4)
+    write_summary(tmp_path, {"noise": NOISE})
+    (run,) = load_results(tmp_path).runs
+    write_summary(tmp_path, {"noise": NOISE, "earlier_episodes": 2})
+    results = load_results(tmp_path)
+    bounds = mut.bounds_of(results.runs[0], NOISE)
+    assert np.isinf(bounds[:2]).all()
+    np.testing.assert_allclose(bounds[2:], mut.bounds_of(replace(run, episodes=run.episodes[2:]), NOISE))
+    assert list(np.isfinite(mut.error_over_bound(results, ""))) == [False, False, True, True]
+
+
+def test_the_final_error_is_that_of_each_runs_own_last_episode(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0, 1), episodes=3)
+    write_summary(tmp_path, {"noise": NOISE})
+    long, short = load_results(tmp_path).runs
+    short = replace(short, episodes=short.episodes[:1])
+    ratios = [mut.errors_of(run, TRUE)[-1] / mut.bounds_of(run, NOISE)[-1] for run in (long, short)]
+    found = mut.final_error_over_bound([(long, TRUE), (short, TRUE)], NOISE)
+    assert found == pytest.approx(np.sqrt(np.mean(np.square(ratios))))
+
+
+def test_there_is_no_final_error_over_bound_where_a_run_has_no_bound(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0, 1), episodes=2)
+    run, other = load_results(tmp_path).runs
+    assert mut.final_error_over_bound([(run, TRUE), (other, TRUE)], NOISE) is not None
+    early = replace(other, earlier_episodes=2)
+    assert mut.final_error_over_bound([(run, TRUE), (early, TRUE)], NOISE) is None
+    assert mut.final_error_over_bound([(run, TRUE)], None) is None
+    assert mut.final_error_over_bound([], NOISE) is None
+
+
 def test_errors_are_learned_minus_true(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=2)
     (run,) = load_results(tmp_path).runs

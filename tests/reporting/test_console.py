@@ -101,6 +101,14 @@ def test_solves_that_stopped_early_are_told_apart_from_failures(capsys):
     assert "stopped early" not in output
 
 
+def test_before_a_change_of_mind_distances_are_dashes(capsys):
+    scenario = Scenario(episodes=1)
+    scenario.patient.earlier_weights, scenario.patient.earlier_episodes = [0.2] * 5, 1
+    with mut.RunConsole(scenario, quiet=False) as console:
+        console.show(summarise(scenario, [episode()]))
+    assert "- (best -)" in capsys.readouterr().out
+
+
 def test_quiet_means_nothing_at_all(capsys):
     assert show(episode(), capsys, quiet=True) == ("", "")
 

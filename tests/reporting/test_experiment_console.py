@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from mala_drake.experiments.experiment import RunName
 from mala_drake.reporting import experiment_console as mut
+from mala_drake.reporting.results import load_results
 
 RUN = RunName("noisy", "safety_first", 3)
 
@@ -70,13 +72,32 @@ def test_what_is_unfinished_is_said_at_the_end(capsys):
     ).out.replace("\n", " ")
 
 
+def test_a_run_that_ends_before_a_change_of_mind_has_a_dash(capsys):
+    with mut.ExperimentConsole(quiet=False) as console:
+        figures = {**FIGURES, "best_distance": None, "final_distance": None}
+        console.show({**SUMMARY, "profiles": {"presentation_focused": figures}, "conditions": {}})
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["presentation_focused", "2/5", "never", "-", "4/5", "2", "19/20", "7"] in lines
+
+
+def test_a_finished_run_has_converged_since_the_change_of_mind(capsys, simulate_results, tmp_path):
+    def change(record):
+        return replace(record, distance_to_true=[0.1, 0.6, 0.6, 0.1][record.episode])
+
+    simulate_results(tmp_path, profiles=("safety_first",), seeds=(3,), change=change)
+    records = load_results(tmp_path).runs[0].episodes
+    with mut.ExperimentConsole(quiet=False) as console:
+        console.on_run(RUN, records, earlier_episodes=2)
+    assert "converged after 2," in capsys.readouterr().err
+
+
 def test_a_finished_run_is_a_line(capsys, simulate_results, tmp_path):
     from mala_drake.experiments.episode_reader import read_episodes
 
     simulate_results(tmp_path, profiles=("safety_first",), seeds=(3,))
     records, _ = read_episodes(tmp_path / "safety_first" / "seed_3" / "episodes.jsonl")
     with mut.ExperimentConsole(quiet=False) as console:
-        console.on_run(RUN, records)
+        console.on_run(RUN, records, earlier_episodes=0)
     line = capsys.readouterr().err
     assert line.count("\n") == 1
     assert line.startswith("noisy, safety_first, seed 3: 4 of 4 delivered, ")

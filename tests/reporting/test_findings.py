@@ -7,7 +7,9 @@ from dataclasses import replace
 
 import pytest
 
+from mala_drake.patient.profiles import PROFILES
 from mala_drake.reporting import findings as mut
+from mala_drake.reporting.bound_results import final_error_over_bound
 from mala_drake.reporting.results import load_results
 
 
@@ -70,6 +72,30 @@ def test_learning_is_told_beside_the_paper(gone_wrong):
         "Main: no convergence and a final distance of 0.400 (medians by patient).",
         "The paper reports convergence after 2 rated episodes and final distances of 0.043.",
     )
+
+
+def test_the_final_error_is_that_of_the_last_episodes_however_long_runs_are(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0, 1), episodes=6)
+    patient = {"noise": 0.1}
+    (tmp_path / "summary.json").write_text(json.dumps({"scenario": {"patient": patient}}))
+    path = tmp_path / "speed_oriented" / "seed_1" / "episodes.jsonl"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:1]))
+    results = load_results(tmp_path)
+    known = [(run, PROFILES["speed_oriented"]) for run in results.runs]
+    told = f"final error {final_error_over_bound(known, 0.1):.2f} times the information bound."
+    assert mut.learning_sentences(results)[0].endswith(told)
+
+
+def test_wishes_that_are_even_have_nothing_that_matters_most(tmp_path, simulate_results):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=6)
+    patient = {"true_weights": [0.2] * 5}
+    (tmp_path / "summary.json").write_text(json.dumps({"scenario": {"patient": patient}}))
+    path = tmp_path / "speed_oriented" / "seed_0" / "episodes.jsonl"
+    path.write_text(path.read_text().replace('"profile": "speed_oriented"', '"profile": "custom"'))
+    path.parents[1].rename(tmp_path / "custom")
+    results = load_results(tmp_path)
+    assert not any("greatest weight" in problem for problem in mut.problems(results))
+    assert "runs know what matters most" not in {figure.meaning for figure in mut.headline(results)}
 
 
 def test_the_most_frequent_plan_of_each_patient_is_told(tmp_path, simulate_results):

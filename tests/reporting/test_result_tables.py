@@ -80,6 +80,31 @@ def test_every_condition_has_a_row(two_learners):
     ]
 
 
+def test_a_condition_in_which_nothing_was_done_has_no_cost(tmp_path, simulate_results):
+    def fail(record):
+        return replace(record, success=False, failure="blocked")
+
+    one = {"profiles": ("speed_oriented",), "episodes": 2}
+    simulate_results(tmp_path, **one)
+    simulate_results(tmp_path, **one, change=fail, condition="bandit")
+    table = mut.condition_table(load_results(tmp_path))
+    main, bandit = (dict(zip(table.headings, group.rows[0], strict=True)) for group in table.groups)
+    assert main["cost"] != mut.NONE
+    assert bandit["cost"] == mut.NONE
+
+
+def test_after_a_change_of_mind_the_final_distances_and_the_caption_are_of_what_is_wanted_now(two_learners):
+    changed = replace(two_learners, runs=tuple(replace(run, earlier_episodes=2) for run in two_learners.runs[-2:]))
+    both = replace(two_learners, runs=(*two_learners.runs[:-2], *changed.runs))
+    table = mut.condition_table(both)
+    last = dict(zip(table.headings, table.groups[1].rows[-1], strict=True))
+    assert (last["converged"], last["final d"], last["cost"]) == ("0/2", mut.NONE, mut.NONE)
+    assert "changes its mind" in table.caption
+    assert "changes its mind" in mut.convergence_table(both).caption
+    assert "changes its mind" not in mut.condition_table(two_learners).caption
+    assert "changes its mind" not in mut.convergence_table(two_learners).caption
+
+
 def test_one_condition_needs_no_table_of_conditions(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",))
     assert mut.condition_table(load_results(tmp_path)) is None

@@ -54,6 +54,15 @@ def test_a_record_is_read_as_it_was_written(tmp_path, simulate_results):
     assert record.weights_std is None
 
 
+@pytest.mark.parametrize(
+    ("patient", "earlier"), [({"earlier_episodes": 3}, 3), ({"earlier_episodes": "3"}, 0), ({}, 0), (3, 0)]
+)
+def test_a_run_knows_how_long_ago_the_patient_changed_its_mind(tmp_path, simulate_results, patient, earlier):
+    simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,))
+    (tmp_path / "summary.json").write_text(json.dumps({"scenario": {"patient": patient}}))
+    assert mut.load_results(tmp_path).runs[0].earlier_episodes == earlier
+
+
 def test_conditions_lie_beside_the_main_runs(tmp_path, simulate_results):
     simulate_results(tmp_path, profiles=("speed_oriented",))
     simulate_results(tmp_path, profiles=("speed_oriented",), condition="bandit")

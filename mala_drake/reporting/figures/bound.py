@@ -11,6 +11,7 @@ from mala_drake.reporting.bound_results import bounds_of, error_over_bound, rati
 from mala_drake.reporting.figures.curves import episode_locator, label_ends
 from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.style import INK, MUTED, PAPER, WIDTH, new_figure, profile_color
+from mala_drake.reporting.quantiles import quantile
 from mala_drake.reporting.result_tables import compared_conditions
 from mala_drake.reporting.results import Results
 from mala_drake.reporting.wording import words
@@ -33,8 +34,8 @@ def bound_picture(results: Results) -> Iterator[Picture]:
     caption = (
         "Left: root mean square, over all runs and weights, of the error divided by the information bound, the least "
         "standard deviation that an unbiased estimate from the same rated episodes can have on the simplex (Cramér and "
-        f"Rao; rating noise {noise:g}). Right: the final distance of each run (points, ring: median) and what the "
-        "bound allows (bar: median over runs)."
+        f"Rao; rating noise {noise:g}); it is drawn as long as all runs last. Right: the final distance of each run "
+        "(points, ring: median) and what the bound allows (bar: median over runs)."
     )
     yield Picture("bound", "How much of what could be learned was learned", caption, figure)
 
@@ -63,10 +64,10 @@ def _draw_ratios(axes: Axes, results: Results) -> list[tuple[float, str, str]]:
 def _draw_distances(axes: Axes, results: Results, noise: float) -> None:
     for row, profile in enumerate(results.profiles):
         runs, color = results.of(results.main, profile), profile_color(profile)
-        finals = [run.final.distance_to_true for run in runs]
+        finals = [run.learning.final_distance for run in runs]
         allowed = float(np.median([np.linalg.norm(bounds_of(run, noise)[-1]) for run in runs]))
         axes.plot(finals, [row] * len(finals), "o", color=color, alpha=0.5, markersize=3, markeredgewidth=0)
-        axes.plot(np.median(finals), row, "o", markersize=5, markerfacecolor=PAPER, markeredgecolor=color, zorder=4)
+        axes.plot(quantile(finals, 0.5), row, "o", markersize=5, markerfacecolor=PAPER, markeredgecolor=color, zorder=4)
         if np.isfinite(allowed):
             axes.plot([allowed] * 2, [row - 0.33, row + 0.33], color=INK, linewidth=1.4)
     axes.set_title("Final distance")

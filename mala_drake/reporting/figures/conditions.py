@@ -9,6 +9,7 @@ from mala_drake.reporting.figures.picture import Picture
 from mala_drake.reporting.figures.style import INK, MUTED, WIDTH, new_figure, profile_color
 from mala_drake.reporting.profile_results import ProfileResults, profile_results
 from mala_drake.reporting.quantiles import Spread
+from mala_drake.reporting.result_tables import changes_of_mind
 from mala_drake.reporting.results import Results
 from mala_drake.reporting.wording import words
 
@@ -47,7 +48,10 @@ def condition_picture(results: Results) -> Iterator[Picture]:
             weight="bold",
             va="top",
         )
-    caption = "Medians over seeds by patient, with bars between the quartiles; the first line is the main condition."
+    caption = (
+        "Medians over seeds by patient, with bars between the quartiles; the first line is the main condition. Costs "
+        "are of an average episode in which the task was done."
+    ) + changes_of_mind(results, results.conditions)
     yield Picture("conditions", "What each part is worth", caption, figure)
 
 

@@ -51,8 +51,8 @@ def distance_pictures(results: Results) -> Iterator[Picture]:
 
 
 def _distances(run: Run, results: Results) -> list[float]:
-    """Before the first episode, where the truth is known, and after each."""
-    true = results.true_weights(run.profile)
+    """Before the first episode, where what was wanted then is known, and after each."""
+    true = None if run.earlier_episodes else results.true_weights(run.profile)
     before = float("nan") if true is None else preference_distance(run.episodes[0].weights_before, true)
     return [max(distance, _LEAST) for distance in (before, *(record.distance_to_true for record in run.episodes))]
 
