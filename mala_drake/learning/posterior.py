@@ -12,15 +12,15 @@ import numpy as np
 
 from mala_drake.errors import BadInput
 from mala_drake.learning.abstract_preference_learner import AbstractPreferenceLearner, FloatArray, rated
+from mala_drake.learning.cut_rating import cut_rating
 from mala_drake.learning.drift_test import ALARM, Prediction, conspicuousness
 from mala_drake.learning.rating_evidence import (
     BEST_RATING,
     WORST_RATING,
     Evidence,
     Observation,
-    censored_belief,
 )
-from mala_drake.learning.simplex_posterior import SimplexPosterior, gaussian_approximation, simplex_posterior
+from mala_drake.learning.simplex_posterior import SimplexPosterior, simplex_posterior
 from mala_drake.preferences import CRITERIA
 
 _SIZE = len(CRITERIA)
@@ -113,7 +113,7 @@ class Posterior(AbstractPreferenceLearner):
 
     def posterior(self, state: FloatArray) -> SimplexPosterior:
         """The whole distribution."""
-        return _posterior_of(state.tobytes())
+        return _posterior_at(state.tobytes())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,41 +164,49 @@ class _Memory:
             return grown
         onset = found.index(max(found))
         before = evidences[onset]
-        return _Memory(before.forgotten(gaussian_approximation(before)[0]), grown.episodes, window[onset:])
+        return _Memory(before.forgotten(_posterior_of(before).mean), grown.episodes, window[onset:])
 
 
 def learned(evidence: Evidence, observation: Observation) -> Evidence:
     """The evidence with one more episode: outliers drawn in, cut ratings as bounds."""
-    mean, covariance = gaussian_approximation(evidence)
-    variances, noise = np.diag(covariance), math.sqrt(evidence.noise_variance(mean))
-    predicted = observation.features * mean
+    before = _prediction(evidence)
+    expected = observation.features * before.weights
+    spread = np.sqrt(before.noise**2 + observation.features**2 * before.variances)
+    reach = _OUTLIER * spread if before.degrees_of_freedom >= _TRUSTED else np.full(_SIZE, math.inf)
     values = np.where(observation.plain, observation.values, np.nan)
-    if evidence.degrees_of_freedom >= _TRUSTED:
-        reach = _OUTLIER * np.sqrt(noise**2 + observation.features**2 * variances)
-        values = np.clip(values, predicted - reach, predicted + reach)
-    evidence = evidence.with_values(observation.features, values)
-    for clipped, limit, below in ((observation.clipped_high, 0.0, True), (observation.clipped_low, 1.0, False)):
+    evidence = evidence.with_values(observation.features, np.clip(values, expected - reach, expected + reach))
+    for clipped, below in ((observation.clipped_high, True), (observation.clipped_low, False)):
         for i in np.flatnonzero(clipped & (observation.features > 0.0)).tolist():
-            belief = censored_belief(
+            limit = np.clip(observation.values[i], expected[i] - reach[i], expected[i] + reach[i])
+            cut = cut_rating(
                 float(observation.features[i]),
-                limit,
+                float(limit),
                 below=below,
-                mean=float(mean[i]),
-                deviation=math.sqrt(variances[i]),
-                noise=noise,
+                mean=float(before.weights[i]),
+                deviation=math.sqrt(before.variances[i]),
+                noise=before.noise,
             )
-            if belief is not None:
-                evidence = evidence.with_belief(i, belief[0], noise**2 / belief[1])
+            evidence = evidence.with_cut(i, cut)
     return evidence
 
 
 def _prediction(evidence: Evidence) -> Prediction:
-    mean, covariance = gaussian_approximation(evidence)
-    noise = math.sqrt(evidence.noise_variance(mean))
-    return Prediction(mean, np.diag(covariance), noise, evidence.degrees_of_freedom)
+    posterior = _posterior_of(evidence)
+    noise = math.sqrt(evidence.noise_variance(posterior.mean))
+    return Prediction(posterior.mean, posterior.deviation**2, noise, evidence.degrees_of_freedom)
 
 
-@lru_cache(maxsize=16)
-def _posterior_of(state: bytes) -> SimplexPosterior:
+@lru_cache(maxsize=4)
+def _posterior_at(state: bytes) -> SimplexPosterior:
     """The posterior of a state, which is asked for its mean, its deviation and a draw in turn."""
-    return simplex_posterior(_Memory.unpacked(np.frombuffer(state)).evidence)
+    return _posterior_of(_Memory.unpacked(np.frombuffer(state)).evidence)
+
+
+def _posterior_of(evidence: Evidence) -> SimplexPosterior:
+    """The posterior for some evidence; an episode asks for it anew as long as it is in the window."""
+    return _posterior_of_packed(evidence.packed().tobytes())
+
+
+@lru_cache(maxsize=4 * _WINDOW)
+def _posterior_of_packed(evidence: bytes) -> SimplexPosterior:
+    return simplex_posterior(Evidence.unpacked(np.frombuffer(evidence)))

@@ -8,12 +8,12 @@ s = sigma / 4 and e_i standard normal. Everything that ratings tell about w is t
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from mala_drake.learning.cut_rating import CutRating
 from mala_drake.preferences import CRITERIA
 
 FloatArray = npt.NDArray[np.float64]
@@ -74,7 +74,7 @@ class Evidence:
         information: sum of f_i^2, (5,).
         moment: sum of f_i y_i, (5,).
         squares: sum of y_i^2.
-        count: number of ratings.
+        count: number of ratings; of one that was cut, what it tells of the noise as a part of one that was not.
         noise_shape: a of the inverse-gamma belief about s^2 before these ratings.
         noise_scale: b of it.
     """
@@ -130,12 +130,13 @@ class Evidence:
             count=self.count + float(np.count_nonzero(rated)),
         )
 
-    def with_belief(self, criterion: int, mean: float, precision: float) -> Evidence:
-        """Takes in a belief about one weight, N(mean, s^2 / precision), that is no rating and tells no noise."""
+    def with_cut(self, criterion: int, cut: CutRating) -> Evidence:
+        """Takes in what a cut rating says about the weight of its criterion and about the noise."""
         information, moment = self.information.copy(), self.moment.copy()
-        information[criterion] += precision
-        moment[criterion] += precision * mean
-        return replace(self, information=information, moment=moment, squares=self.squares + precision * mean**2)
+        information[criterion] += cut.precision
+        moment[criterion] += cut.precision * cut.mean
+        squares = self.squares + cut.precision * cut.mean**2 + cut.squares
+        return replace(self, information=information, moment=moment, squares=squares, count=self.count + cut.count)
 
     def forgotten(self, weights: FloatArray) -> Evidence:
         """Nothing is known about the weights any more; what was learned about the noise stays."""
@@ -144,41 +145,3 @@ class Evidence:
         return Evidence.none(
             noise_shape=self.noise_shape + 0.5 * learned, noise_scale=self.noise_scale + 0.5 * residual
         )
-
-
-def censored_belief(
-    feature: float, limit: float, *, below: bool, mean: float, deviation: float, noise: float
-) -> tuple[float, float] | None:
-    """What a clipped rating says about its weight: y is only known to lie below (or above) a limit (Tobin, 1958).
-
-    The belief N(mean, deviation^2) times the probability of the clipping is matched in its first two moments, and the
-    match is divided by the belief (assumed-density filtering).
-
-    Args:
-        feature: f of the criterion.
-        limit: of y: 0 for a rating cut to 5, 1 for one cut to 1.
-        below: whether y lies below the limit.
-        mean: of the weight.
-        deviation: of the weight, > 0.
-        noise: s, > 0.
-
-    Returns:
-        Mean and variance of the Gaussian factor on the weight, or None when the clipping tells nothing.
-    """
-    sign = 1.0 if below else -1.0
-    spread = math.hypot(feature * deviation, noise)
-    z = sign * (limit - feature * mean) / spread
-    density = math.exp(-0.5 * z * z) / math.sqrt(math.tau)
-    probability = 0.5 * math.erfc(-z / math.sqrt(2.0))
-    if not probability > 1e-200:
-        return None  # As good as impossible: a moment match would be numerically empty.
-    ratio = density / probability
-    gain = feature * deviation**2 / spread
-    new_mean = mean - sign * gain * ratio
-    shrink = ratio * (ratio + z)
-    new_variance = deviation**2 - gain**2 * shrink
-    precision = 1.0 / new_variance - 1.0 / deviation**2 if new_variance > 0.0 else 0.0
-    if not precision > 1e-9 / deviation**2:
-        return None
-    factor_mean = (new_mean / new_variance - mean / deviation**2) / precision
-    return factor_mean, 1.0 / precision

@@ -6,8 +6,10 @@ With a uniform prior on the simplex and an inverse-gamma prior IG(a, b) on the n
 
 a multivariate t distribution cut off at the simplex's faces. Its moments have no closed form. They are computed from
 points drawn half from the uncut distribution and half from the whole simplex (a defensive mixture: Owen & Zhou, "Safe
-and effective importance sampling", 2000), so that both a vague and a sharp posterior are well covered. The underlying
-random numbers are always the same: the posterior is a function of the evidence alone.
+and effective importance sampling", 2000), so that both a vague and a sharp posterior are well covered. Near a corner,
+where hardly any of the uncut distribution lies on the simplex, the effective sample size (Kish) shows it, and the
+points then walk to the posterior (`simplex_walk.py`). The underlying random numbers are always the same: the posterior
+is a function of the evidence alone.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ import numpy.typing as npt
 from mala_drake.learning.information_bound import sum_zero_basis
 from mala_drake.learning.rating_evidence import Evidence
 from mala_drake.learning.simplex import project_onto_simplex
+from mala_drake.learning.simplex_walk import walk_on_simplex
 from mala_drake.preferences import CRITERIA
 
 FloatArray = npt.NDArray[np.float64]
@@ -32,6 +35,8 @@ _BASIS = sum_zero_basis(_SIZE)
 _HALF = 2050  # Points of each component of the mixture.
 _ROUNDS, _SETTLED = 20, 1e-4  # Of the search for the middle of the posterior, and when it ends.
 _TAIL = 6.0  # Degrees of freedom of the drawn t distribution: heavier tails than any posterior but the vaguest.
+_ENOUGH = 300.0  # As many equally probable points must tell as much as the weighted ones do.
+_WALKERS = 1000
 _VOLUME = math.sqrt(_SIZE) / math.factorial(_FREEDOM)  # Of the simplex, in its own dimension.
 _SIMPLEX_DEVIATION = math.sqrt((_SIZE - 1.0) / (_SIZE**2 * (_SIZE + 1.0)))  # Of a weight that nothing is known about.
 
@@ -62,6 +67,11 @@ class SimplexPosterior:
         return covariance
 
     @property
+    def effective_size(self) -> float:
+        """As many equally probable points would tell as much (Kish): at most the number of points."""
+        return 1.0 / float(self.probabilities @ self.probabilities)
+
+    @property
     def deviation(self) -> FloatArray:
         """The standard deviation of each weight, (5,)."""
         return np.sqrt(np.diag(self.covariance))
@@ -70,6 +80,12 @@ class SimplexPosterior:
         """The equal-tailed credible interval of each weight: lower and upper ends, (5, 2)."""
         tails = np.array([0.5 * (1.0 - probability), 0.5 * (1.0 + probability)])
         return np.array([_quantiles(column, self.probabilities, tails) for column in self.points.T])
+
+    def resampled(self, count: int) -> FloatArray:
+        """Equally probable points, (count, 5): evenly spaced in the cumulative probability."""
+        cumulative = np.cumsum(self.probabilities)
+        levels = (np.arange(count) + 0.5) / count * cumulative[-1]
+        return self.points[np.searchsorted(cumulative, levels)]
 
     def draw(self, generator: np.random.Generator) -> FloatArray:
         """Weights drawn at random from the distribution: (5,)."""
@@ -82,7 +98,19 @@ def simplex_posterior(evidence: Evidence) -> SimplexPosterior:
     """The posterior for what has been rated so far; the uniform distribution before anything has."""
     if evidence.count == 0.0 and not evidence.information.any():
         uniform = _draws()[1]
-        return SimplexPosterior(uniform, np.full(len(uniform), 1.0 / len(uniform)))
+        return _of_equal_points(uniform)
+    sampled = _sampled(evidence)
+    if sampled.effective_size >= _ENOUGH:
+        return sampled
+    return _of_equal_points(walk_on_simplex(evidence, sampled.resampled(_WALKERS)))
+
+
+def _of_equal_points(points: FloatArray) -> SimplexPosterior:
+    return SimplexPosterior(points, np.full(len(points), 1.0 / len(points)))
+
+
+def _sampled(evidence: Evidence) -> SimplexPosterior:
+    """By importance sampling."""
     centre, factor = _centre_and_factor(evidence)
     normals, uniform = _draws()
     near = centre + normals @ factor.T
@@ -94,17 +122,11 @@ def simplex_posterior(evidence: Evidence) -> SimplexPosterior:
     return SimplexPosterior(points, weights / weights.sum())
 
 
-def gaussian_approximation(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
-    """Mean, on the simplex, and covariance of a Gaussian near the posterior, (5,) and (5, 5): quick and rough.
+def _centre_and_factor(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
+    """Mean, (5,), and a factor L, (5, 4), of the covariance L L' of a Gaussian near the posterior, to draw points by.
 
     The uniform prior counts as a Gaussian of the simplex's own width.
     """
-    centre, factor = _centre_and_factor(evidence)
-    return centre, factor @ factor.T
-
-
-def _centre_and_factor(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
-    """The approximation's mean, (5,), and a factor L of its covariance L L', (5, 4)."""
     basis, middle = _BASIS, np.full(_SIZE, 1.0 / _SIZE)
     prior = np.eye(_FREEDOM) / _SIMPLEX_DEVIATION**2
     centre, precision = middle, prior

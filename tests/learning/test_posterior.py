@@ -149,6 +149,39 @@ def test_the_noise_level_is_learned():
         assert LEARNER.noise(state) == pytest.approx(noise, rel=0.15)
 
 
+@pytest.mark.parametrize(
+    ("truth", "low", "high", "noise"),
+    [
+        (PROFILES["presentation_focused"], 0.1, 0.5, 0.1),
+        (PROFILES["speed_oriented"], 0.05, 0.3, 0.1),
+        (PROFILES["speed_oriented"], 0.2, 0.9, 0.4),
+        ((1.0, 0.0, 0.0, 0.0, 0.0), 0.2, 0.9, 0.1),
+        ((0.5, 0.5, 0.0, 0.0, 0.0), 0.2, 0.9, 0.1),
+    ],
+)
+def test_the_noise_level_is_learned_of_a_patient_who_clips(truth, low, high, noise):
+    levels = [
+        LEARNER.noise(list(simulate(truth, seed, low=low, high=high, noise=noise, clip=True))[-1][1])
+        for seed in range(4)
+    ]
+    assert np.mean(levels) == pytest.approx(noise, rel=0.12)
+
+
+def test_ratings_without_any_noise_are_learned_from_in_a_corner():
+    """Four of five ratings are exactly the best one, which might have been cut."""
+    truth = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    *_, (_, state) = simulate(truth, 0, noise=0.0)
+    assert preference_distance(LEARNER.estimate(state), truth) < 0.02
+    assert LEARNER.noise(state) < 0.15
+
+
+def test_a_rating_that_was_cut_beyond_belief_does_little_harm():
+    truth = PROFILES["speed_oriented"]
+    *_, (_, state) = simulate(truth, 3, low=0.8, high=0.9)
+    odd = LEARNER.update(state, ratings=(5.0, None, None, None, None), features=(0.9,) * 5)
+    assert preference_distance(LEARNER.estimate(odd), LEARNER.estimate(state)) < 0.02
+
+
 def test_a_patient_who_changes_is_learned_again():
     before, after = PROFILES["speed_oriented"], PROFILES["safety_first"]
     for seed in range(5):

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mala_drake.learning.rating_evidence import Evidence
-from mala_drake.learning.simplex_posterior import gaussian_approximation, simplex_posterior
+from mala_drake.learning.simplex_posterior import simplex_posterior
 
 NOISE = 0.025
 
@@ -20,25 +20,34 @@ def evidence_of(episodes, truth, *, seed=0, low=0.2, high=0.9, noise=NOISE):
     return evidence
 
 
+def faint(strengths, truth, *, seed=0, episodes=40, noise=NOISE):
+    """Some criteria always have much smaller features than others."""
+    generator = np.random.Generator(np.random.PCG64(seed))
+    evidence = Evidence.none(noise_shape=1.5, noise_scale=1.5 * NOISE**2)
+    for _ in range(episodes):
+        features = np.array(strengths) * generator.uniform(0.8, 1.1, 5)
+        evidence = evidence.with_values(features, features * truth + noise * generator.standard_normal(5))
+    return evidence
+
+
 def metropolis(evidence, steps=150_000):
-    """An independent sampler of the same density: a random walk within the simplex."""
+    """An independent sampler of the same density: a random walk within the simplex, with steps of all lengths."""
     generator = np.random.Generator(np.random.PCG64(99))
     exponent = evidence.noise_shape + 0.5 * evidence.count
 
     def log_density(w):
         return -exponent * math.log(evidence.noise_scale + 0.5 * max(float(evidence.residual_squares(w)), 0.0))
 
-    mean, covariance = gaussian_approximation(evidence)
-    factor = np.linalg.cholesky(covariance + 1e-12 * np.eye(5))
-    w, density, kept = mean.clip(1e-3) / mean.clip(1e-3).sum(), -math.inf, []
+    lengths = 1.0 / np.sqrt(evidence.information / evidence.noise_variance(np.full(5, 0.2)) + 40.0)
+    w, density, kept = np.full(5, 0.2), -math.inf, []
     for step in range(steps):
-        move = factor @ generator.standard_normal(5)
-        proposal = w + 0.9 * (move - move.mean())
+        move = lengths * generator.standard_normal(5) * 10.0 ** generator.uniform(-2.0, 0.3)
+        proposal = w + move - move.mean()
         if (proposal >= 0.0).all():
             proposed = log_density(proposal)
             if math.log(generator.random()) < proposed - density:
                 w, density = proposal, proposed
-        if step > 2000:
+        if step > 20_000:
             kept.append(w)
     return np.array(kept)
 
@@ -53,21 +62,26 @@ def test_before_any_rating_it_is_the_uniform_distribution_of_the_simplex():
 
 
 @pytest.mark.parametrize(
-    ("episodes", "truth", "slack"),
+    "evidence",
     [
-        (1, (0.5, 0.12, 0.14, 0.14, 0.1), 1.0),
-        (3, (0.97, 0.03, 0.0, 0.0, 0.0), 2.0),  # In a corner few of the drawn points are on the simplex.
-        (25, (0.05, 0.1, 0.05, 0.2, 0.6), 1.0),
+        evidence_of(1, np.array((0.5, 0.12, 0.14, 0.14, 0.1))),
+        evidence_of(25, np.array((0.05, 0.1, 0.05, 0.2, 0.6))),
+        # In a corner hardly any of the drawn points are on the simplex.
+        evidence_of(3, np.array((0.97, 0.03, 0.0, 0.0, 0.0))),
+        evidence_of(40, np.array((1.0, 0.0, 0.0, 0.0, 0.0)), noise=0.002),
+        # What is hardly seen has hardly any room beside what is known well.
+        faint((0.9, 0.9, 0.05, 0.05, 0.05), np.array((0.5, 0.5, 0.0, 0.0, 0.0)), noise=0.0125),
+        faint((0.05, 0.7, 0.7, 0.7, 0.05), np.array((0.05, 0.1, 0.05, 0.2, 0.6)), noise=0.0125, seed=1),
     ],
+    ids=["vague", "sharp", "corner", "sharp corner", "sharp edge", "two faint"],
 )
-def test_moments_and_intervals_are_those_of_an_independent_sampler(episodes, truth, slack):
-    evidence = evidence_of(episodes, np.array(truth))
+def test_moments_and_intervals_are_those_of_an_independent_sampler(evidence):
     posterior, sample = simplex_posterior(evidence), metropolis(evidence)
     deviation = sample.std(axis=0)
-    np.testing.assert_array_less(np.abs(posterior.mean - sample.mean(axis=0)), 0.15 * slack * deviation)
-    np.testing.assert_allclose(posterior.deviation, deviation, rtol=0.12 * slack)
+    np.testing.assert_array_less(np.abs(posterior.mean - sample.mean(axis=0)), 0.2 * deviation)
+    np.testing.assert_allclose(posterior.deviation, deviation, rtol=0.12)
     ends = np.quantile(sample, [0.05, 0.95], axis=0).T
-    np.testing.assert_array_less(np.abs(posterior.interval(0.9) - ends).max(axis=1), 0.3 * slack * deviation)
+    np.testing.assert_array_less(np.abs(posterior.interval(0.9) - ends).max(axis=1), 0.3 * deviation)
 
 
 @given(st.integers(0, 60), st.lists(st.floats(0.001, 1.0), min_size=5, max_size=5), st.integers(0, 1000))
@@ -77,7 +91,7 @@ def test_everything_about_it_lies_on_the_simplex(episodes, truth, seed):
     for weights in (posterior.mean, posterior.draw(np.random.Generator(np.random.PCG64(seed)))):
         assert weights.sum() == pytest.approx(1.0)
         assert (weights >= 0.0).all()
-    assert 1.0 / (posterior.probabilities @ posterior.probabilities) > 60  # As many equal points would tell (Kish).
+    assert posterior.effective_size >= 300.0
     lower, upper = posterior.interval(0.9).T
     assert (lower >= 0.0).all()
     assert (lower <= posterior.mean).all()
