@@ -33,35 +33,24 @@ class PreferenceLearner(LearnerSystem):
     context of this one, goes on as if it had never stopped.
     """
 
-    def __init__(
-        self,
-        *,
-        learner: AbstractPreferenceLearner,
-        initial_state: FloatArray | None = None,
-        seed: int = 0,
-        first_episode: int = 0,
-    ) -> None:
-        """Constructs the system.
+    def __init__(self, *, learner: AbstractPreferenceLearner, seed: int = 0) -> None:
+        """Constructs the system around a learner that has learned nothing yet.
 
         Args:
             learner: what learns.
-            initial_state: of the learner, when it has learned before; its own initial state otherwise.
             seed: of the run.
-            first_episode: the number of the episode that has the sequence number 1.
 
         Raises:
-            BadInput: if the seed or the episode is negative.
+            BadInput: if the seed is negative.
         """
         super().__init__()
         self._learner = learner
         self._seed = seed
-        self._first_episode = first_episode
-        keyed_generator(seed, first_episode, _NAME)  # Refuses a bad seed now rather than in the simulation.
-        state = learner.initial_state() if initial_state is None else initial_state
+        keyed_generator(seed, 0, _NAME)  # Refuses a bad seed now rather than in the simulation.
         # What was computed last, and from which state: a pure function's memory, not state.
         self._newest: tuple[bytes, Preferences] = (b"", Preferences())
         self._ratings = self.DeclareAbstractInputPort("ratings", Value(Ratings()))
-        self._declare_learned("preferences", Preferences(), initial_state=state, marks=1)
+        self._declare_learned("preferences", Preferences(), initial_state=learner.initial_state(), marks=1)
         self.DeclarePeriodicDiscreteUpdateEvent(TICK, LEARN_OFFSET, self._update)
 
     def set_learner_state(self, context: Context, state: FloatArray, *, episode: int) -> None:
@@ -70,14 +59,14 @@ class PreferenceLearner(LearnerSystem):
         Args:
             context: of this system.
             state: of the learner, as `learner_state` gave it.
-            episode: the number of the episode to plan now, >= first_episode.
+            episode: the number of the episode to plan now, >= 0; as many have been rated.
 
         Raises:
-            BadInput: if the episode is before the first one.
+            BadInput: if the episode is negative.
         """
-        if episode < self._first_episode:
-            raise BadInput("episode", str(episode), f"a number >= {self._first_episode}")
-        context.SetDiscreteState(np.append(state, float(episode - self._first_episode)))
+        if episode < 0:
+            raise BadInput("episode", str(episode), "a number >= 0")
+        context.SetDiscreteState(np.append(state, float(episode)))
 
     def seen(self, context: Context) -> int:
         """Sequence number of the last ratings taken in, 0 before the first."""
@@ -92,7 +81,7 @@ class PreferenceLearner(LearnerSystem):
 
     def _preferences(self, context: Context) -> Preferences:
         state = self.learner_state(context)
-        generator = keyed_generator(self._seed, self._first_episode + self.seen(context), _NAME)
+        generator = keyed_generator(self._seed, self.seen(context), _NAME)
         deviation = self._learner.deviation(state)
         return Preferences(
             planning=tuple(self._learner.planning_weights(state, generator).tolist()),

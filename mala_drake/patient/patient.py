@@ -43,7 +43,6 @@ class Patient(LeafSystem):
         earlier_episodes: int = 0,
         profile: str = "custom",
         seed: int = 0,
-        first_episode: int = 0,
     ) -> None:
         """Constructs the patient.
 
@@ -56,7 +55,6 @@ class Patient(LeafSystem):
             earlier_episodes: the number of the first episode that is rated by `profile_weights`.
             profile: what the patient is called; the random numbers are its own.
             seed: of the run.
-            first_episode: the number of the episode that has the sequence number 1.
 
         Raises:
             BadInput: if the weights are off the simplex or a number is out of its range.
@@ -67,9 +65,8 @@ class Patient(LeafSystem):
         self._earlier = validated_weights(earlier_weights or profile_weights, where="patient.earlier_weights")
         self._habits = RatingHabits(noise=noise, clip=clip, missing=missing)
         self._seed = seed
-        self._first_episode = first_episode
         self._stream = f"patient/{profile}"
-        keyed_generator(seed, first_episode, self._stream)  # Refuses a bad seed now rather than in the simulation.
+        keyed_generator(seed, 0, self._stream)  # Refuses a bad seed now rather than in the simulation.
         self._report = self.DeclareAbstractInputPort("episode_report", Value(EpisodeReport()))
         self._ratings = self.DeclareAbstractState(Value(Ratings()))
         self.DeclareAbstractOutputPort(
@@ -91,7 +88,7 @@ class Patient(LeafSystem):
     def _rate(self, report: EpisodeReport) -> Ratings:
         if not report.success:
             return Ratings(report.sequence, (None,) * len(CRITERIA), report.features)
-        episode = self._first_episode + report.sequence - 1
+        episode = report.sequence - 1
         generator = keyed_generator(self._seed, episode, self._stream)
         weights = self._earlier if episode < self._earlier_episodes else self._weights
         return Ratings(report.sequence, rate(report.features, weights, generator, self._habits), report.features)

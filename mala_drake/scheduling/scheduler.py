@@ -31,24 +31,20 @@ class Scheduler(LeafSystem):
     with the reports so far; `closed` is 1 once the last task is reported, 0 before.
     """
 
-    def __init__(self, *, tasks: Sequence[str], first_episode: int = 0) -> None:
+    def __init__(self, *, tasks: Sequence[str]) -> None:
         """Constructs the scheduler.
 
         Args:
             tasks: their names, in order (see `task_names`).
-            first_episode: the number of the episode of the first one.
 
         Raises:
-            BadInput: if a name is empty or the episode is negative.
+            BadInput: if a name is empty.
         """
         super().__init__()
         for index, name in enumerate(tasks):
             if not name:
                 raise BadInput(f"tasks[{index}]", "an empty name", "the name of a task")
-        if first_episode < 0:
-            raise BadInput("first_episode", str(first_episode), "an integer >= 0")
         self._tasks = tuple(tasks)
-        self._first_episode = first_episode
         self._report = self.DeclareAbstractInputPort("task_report", Value(TaskReport()))
         self._progress = self.DeclareAbstractState(Value(Progress()))
         ticket = {self.abstract_state_ticket(self._progress)}
@@ -68,11 +64,9 @@ class Scheduler(LeafSystem):
         Raises:
             BadInput: unless the run has that episode (or ends just before it: then it is closed at the next tick).
         """
-        issued = episode - self._first_episode
-        if not 0 <= issued <= len(self._tasks):
-            last = self._first_episode + len(self._tasks)
-            raise BadInput("episode", str(episode), f"a number from {self._first_episode} to {last}")
-        context.SetAbstractState(self._progress, Progress(issued=issued))
+        if not 0 <= episode <= len(self._tasks):
+            raise BadInput("episode", str(episode), f"a number from 0 to {len(self._tasks)}")
+        context.SetAbstractState(self._progress, Progress(issued=episode))
 
     def _current(self, context: Context) -> Progress:
         progress: Progress = context.get_abstract_state(self._progress).get_value()
@@ -89,5 +83,5 @@ class Scheduler(LeafSystem):
 
     def _update(self, context: Context, state: State) -> None:
         progress = self._current(context)
-        following = advance(progress, self._report.Eval(context), self._tasks, first_episode=self._first_episode)
+        following = advance(progress, self._report.Eval(context), self._tasks)
         state.get_mutable_abstract_state(self._progress).set_value(following)

@@ -11,25 +11,22 @@ from mala_drake.messages import Message, Task, TaskReport
 ALTERNATING_TASKS = ("medication", "meal")
 
 
-def task_names(choice: str, *, episodes: int, first_episode: int = 0) -> tuple[str, ...]:
-    """The task of each episode from `first_episode` on.
+def task_names(choice: str, *, episodes: int) -> tuple[str, ...]:
+    """The task of each episode of a run.
 
     Args:
         choice: the name of the one task to repeat, or "alternate" for medication and meal in turn.
         episodes: how many, >= 0.
-        first_episode: the number of the first one; even episodes of "alternate" are medication, whenever a run is
-            resumed.
 
     Raises:
-        BadInput: if `episodes` or `first_episode` is negative, or the choice is empty.
+        BadInput: if `episodes` is negative or the choice is empty.
     """
-    for label, number in (("episodes", episodes), ("first_episode", first_episode)):
-        if number < 0:
-            raise BadInput(label, str(number), "an integer >= 0")
+    if episodes < 0:
+        raise BadInput("episodes", str(episodes), "an integer >= 0")
     if not choice:
         raise BadInput("task", "an empty name", "the name of a task or 'alternate'")
     turns = ALTERNATING_TASKS if choice == "alternate" else (choice,)
-    return tuple(turns[episode % len(turns)] for episode in range(first_episode, first_episode + episodes))
+    return tuple(turns[episode % len(turns)] for episode in range(episodes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +46,7 @@ class Progress(Message):
     closed: bool = False
 
 
-def advance(progress: Progress, report: TaskReport, names: Sequence[str], *, first_episode: int = 0) -> Progress:
+def advance(progress: Progress, report: TaskReport, names: Sequence[str]) -> Progress:
     """The progress after looking at the latest task report once.
 
     The current task is closed by a finished report with its own sequence number, whether it succeeded or not; the
@@ -59,7 +56,6 @@ def advance(progress: Progress, report: TaskReport, names: Sequence[str], *, fir
         progress: so far.
         report: the planner's latest.
         names: of all tasks of the run.
-        first_episode: the number of the episode of the first of them.
     """
     if progress.closed:
         return progress
@@ -71,4 +67,4 @@ def advance(progress: Progress, report: TaskReport, names: Sequence[str], *, fir
     issued = progress.issued
     if issued == len(names):
         return Progress(progress.task, issued, reports, closed=True)
-    return Progress(Task(issued + 1, names[issued], first_episode + issued), issued + 1, reports)
+    return Progress(Task(issued + 1, names[issued], issued), issued + 1, reports)

@@ -17,18 +17,11 @@ def test_alternate_takes_medication_and_meal_in_turn():
     assert task_names("alternate", episodes=3) == ("medication", "meal", "medication")
 
 
-@given(st.integers(0, 20), st.integers(0, 20))
-def test_a_resumed_run_goes_on_where_the_whole_run_would_be(done, left):
-    whole = task_names("alternate", episodes=done + left)
-    assert task_names("alternate", episodes=left, first_episode=done) == whole[done:]
-
-
 @pytest.mark.parametrize(
     ("choice", "options", "where"),
     [
         ("", {"episodes": 1}, "task"),
         ("meal", {"episodes": -1}, "episodes"),
-        ("meal", {"episodes": 1, "first_episode": -1}, "first_episode"),
     ],
 )
 def test_bad_choices_are_refused(choice, options, where):
@@ -54,22 +47,22 @@ def test_a_finished_task_is_closed_and_the_next_one_issued(success):
     assert progress == Progress(Task(2, "meal", 1), 2, (report,))
 
 
-@given(st.integers(0, 6), st.integers(0, 50))
-def test_a_run_closes_every_task_once_in_order(count, first_episode):
-    names = task_names("alternate", episodes=count, first_episode=first_episode)
+@given(st.integers(0, 6))
+def test_a_run_closes_every_task_once_in_order(count):
+    names = task_names("alternate", episodes=count)
     progress, report = Progress(), TaskReport()
     for _ in range(3 * count + 3):  # Each report is seen several times, as a planner repeats it every tick.
-        progress = advance(progress, report, names, first_episode=first_episode)
+        progress = advance(progress, report, names)
         if not progress.closed:
-            assert progress.task.episode == first_episode + progress.task.sequence - 1
+            assert progress.task.episode == progress.task.sequence - 1
             report = TaskReport(progress.task.sequence, finished=True, success=True)
     assert progress.closed
     assert [report.sequence for report in progress.reports] == list(range(1, count + 1))
 
 
 def test_a_resumed_run_issues_the_next_task_under_its_own_number():
-    resumed = advance(Progress(issued=2), TaskReport(), NAMES, first_episode=10)
-    assert resumed == Progress(Task(3, "medication", 12), 3)
+    resumed = advance(Progress(issued=2), TaskReport(), NAMES)
+    assert resumed == Progress(Task(3, "medication", 2), 3)
 
 
 def test_a_run_without_tasks_is_closed_at_once():
