@@ -52,7 +52,8 @@ def make_control_learners(
 
 def dynamics_estimator(scenario: Scenario) -> DynamicsEstimator:
     """What estimates the coefficients of the controller's model."""
-    return DynamicsEstimator(pose_noise=max(scenario.robot.position_noise, scenario.robot.yaw_noise))
+    robot = scenario.robot
+    return DynamicsEstimator(pose_noise=max(robot.position_noise, robot.yaw_noise), velocity_noise=robot.velocity_noise)
 
 
 def _target_learner(control: ControlConfig, ward: Ward, guide: LegGuide, congestion: Congestion) -> TargetLearner:

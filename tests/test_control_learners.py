@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from mala_drake import control_learners as mut
 from mala_drake.control.leg import LegGuide, LegRules
 from mala_drake.control.sensitivities.leg_simulator import LegSimulator
 from mala_drake.control.solver_by_horizon import SHORTEST_HORIZON, solver_of_kind
+from mala_drake.learning.dynamics_estimator import Transition
 from mala_drake.scenario import ControlConfig, Scenario
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.legs import leg_planner
@@ -76,3 +78,13 @@ def test_legs_are_simulated_with_the_controllers_kind_of_horizon(make, monkeypat
 def test_targets_that_are_learned_through_the_identity_need_no_simulated_legs(make, monkeypatch):
     monkeypatch.setattr(mut, "LegSimulator", None)
     assert list(make(learned_targets=True, target_sensitivity="identity")) == ["target_learner"]
+
+
+def test_the_dynamics_are_estimated_knowing_the_noise_of_what_is_measured():
+    """A motion that is as far from its rates as such noise makes it is learned from, without noise it is not."""
+    after = np.array([0.2, 0.0, 0.0, 1.1, 0.0, 0.0])
+    transition = Transition(np.array([0.0, 0.0, 0.0, 1.1, 0.0, 0.0]), np.array([0.1, 0.0, 0.0]), after)
+    quiet, noisy = Scenario(), Scenario()
+    noisy.robot.velocity_noise = 0.05
+    assert not mut.dynamics_estimator(quiet).describes(transition)
+    assert mut.dynamics_estimator(noisy).describes(transition)

@@ -87,6 +87,7 @@ class DynamicsEstimator(AbstractLearner):
         *,
         period: float = TICK,
         pose_noise: float = 0.0,
+        velocity_noise: float = 0.0,
         least_speed: float = 0.3,
         least_excitation: float = 0.003,
         bound: float = 2.5,
@@ -98,6 +99,7 @@ class DynamicsEstimator(AbstractLearner):
         Args:
             period: between two samples, seconds.
             pose_noise: standard deviation of the measured positions, metres, or yaw, radians, whichever is larger.
+            velocity_noise: standard deviation of the measured velocities, m/s and rad/s.
             least_speed: below which braking, which is passive and ends at rest, is not learned from, m/s.
             least_excitation: velocity change that coefficients off by `NOMINAL_DEVIATIONS` must at least make for a
                 sample to be learned from, m/s and rad/s.
@@ -112,12 +114,18 @@ class DynamicsEstimator(AbstractLearner):
         for name, value in numbers.items():
             if not (math.isfinite(value) and value > 0.0):
                 raise BadInput(f"dynamics {name}", repr(value), "a finite number that is large enough")
-        limits = {"pose_noise": pose_noise, "least_speed": least_speed, "least_excitation": least_excitation}
+        limits = {
+            "pose_noise": pose_noise,
+            "velocity_noise": velocity_noise,
+            "least_speed": least_speed,
+            "least_excitation": least_excitation,
+        }
         for name, value in limits.items():
             if not (math.isfinite(value) and value >= 0.0):
                 raise BadInput(f"dynamics {name}", repr(value), "a finite number >= 0")
         self._period = period
-        self._pose_noise = pose_noise
+        # Of a way or an angle: the poses' own, and that of the mean of two rates, over the period.
+        self._motion_noise = math.hypot(pose_noise, period * velocity_noise / math.sqrt(2.0))
         self._least_speed = least_speed
         self._least_excitation = least_excitation
         self._bound = bound
@@ -180,7 +188,7 @@ class DynamicsEstimator(AbstractLearner):
 
     def _agree(self, measured: float, expected: float) -> bool:
         """Whether a way (m) or an angle (rad) agrees with the mean of the rates at its ends."""
-        return abs(measured - expected) <= 1e-3 + 0.02 * abs(expected) + 4.0 * self._pose_noise
+        return abs(measured - expected) <= 1e-3 + 0.02 * abs(expected) + 4.0 * self._motion_noise
 
     def prediction(self, transition: Transition, coefficients: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What the model predicts of a transition: z+, (6,), and the slopes of its velocities by p^f, (3, 6)."""

@@ -279,6 +279,29 @@ def test_a_sample_taken_a_plant_step_late_is_left_out():
     assert not learner.describes(mut.Transition(plain.before, plain.control, late))
 
 
+def as_measured(transitions, pose_noise, velocity_noise):
+    """What an estimator of the robot's state with noise makes of them."""
+    generator = np.random.default_rng(3)
+    noise = np.repeat((pose_noise, velocity_noise), 3)
+    for t in transitions:
+        before, after = (z + noise * generator.standard_normal(6) for z in (t.before, t.after))
+        yield mut.Transition(before, t.control, after)
+
+
+@pytest.mark.parametrize(("pose_noise", "velocity_noise"), [(0.0, 0.05), (0.01, 0.0), (0.01, 0.05), (1e-3, 0.1)])
+def test_measurements_with_noise_that_is_told_contradict_themselves_hardly_ever(pose_noise, velocity_noise):
+    samples = list(as_measured(log(600, noise=0 * NOISE), pose_noise, velocity_noise))
+    learner = mut.DynamicsEstimator(pose_noise=pose_noise, velocity_noise=velocity_noise)
+    assert np.mean([learner.describes(sample) for sample in samples]) > 0.98
+
+
+def test_what_noisy_velocities_teach_is_not_selected_by_their_noise():
+    samples = as_measured(log(600, noise=0 * NOISE), 0.0, 0.05)
+    learner, state = learned(samples, mut.DynamicsEstimator(velocity_noise=0.05))
+    assert learner.coefficients(state)[2] == pytest.approx(TRUTH[2], abs=3.0 * learner.deviations(state)[2])
+    assert learner.deviations(state)[2] < 0.1
+
+
 def test_slopes_are_those_of_the_models_step():
     learner = mut.DynamicsEstimator()
     (sample,) = log(1)
@@ -318,6 +341,7 @@ def test_a_state_survives_json_bit_for_bit():
         {"memory": 1.0},
         {"noise_memory": np.inf},
         {"pose_noise": np.nan},
+        {"velocity_noise": -0.1},
         {"least_speed": -0.1},
         {"least_excitation": -1.0},
     ],
