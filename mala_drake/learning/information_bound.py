@@ -4,6 +4,9 @@ A rating r_i = 5 - 4 f_i w_i + eps_i with eps_i ~ N(0, sigma^2) carries the info
 The weights sum to one, so only directions within the simplex are uncertain: with U an orthonormal basis of the vectors
 that sum to zero and J the information, the covariance of an unbiased estimate is at least U (U' J U)^-1 U' (Stoica &
 Ng, "On the Cramer-Rao bound under parametric constraints", 1998).
+
+J is diagonal, so U' J U is singular where two weights or more are not rated at all. Of these only the sum is known, as
+what the others leave; it tells nothing of the others, which are known as without the constraint.
 """
 
 from __future__ import annotations
@@ -36,7 +39,7 @@ def weight_bound(features: npt.ArrayLike, noise: float) -> FloatArray:
         noise: sigma, the standard deviation of a rating, > 0.
 
     Returns:
-        One number a criterion; infinite where nothing that was rated tells a direction of the simplex.
+        One number a criterion; infinite for weights of which nothing tells more than their sum with others.
 
     Raises:
         BadInput: if the noise is not positive or the features are not a table.
@@ -48,9 +51,11 @@ def weight_bound(features: npt.ArrayLike, noise: float) -> FloatArray:
         raise BadInput("features", f"shape {table.shape}", "(episodes, criteria)")
     size = table.shape[1]
     basis = sum_zero_basis(size)
-    information = basis.T @ ((16.0 / noise**2) * (table**2).sum(axis=0)[:, None] * basis)
+    told = (16.0 / noise**2) * (table**2).sum(axis=0)
+    information = basis.T @ (told[:, None] * basis)
     if np.linalg.matrix_rank(information) < size - 1:
-        return np.full(size, np.inf)
+        unseen = told <= np.sort(told)[1]  # At least two.
+        return np.where(unseen, np.inf, 1.0 / np.sqrt(np.where(unseen, 1.0, told)))
     covariance = basis @ np.linalg.solve(information, basis.T)
     return np.sqrt(np.diag(covariance))
 

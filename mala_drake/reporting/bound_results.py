@@ -23,7 +23,7 @@ def rating_noise(results: Results, condition: str) -> float | None:
 def bounds_of(run: Run, noise: float) -> NDArray[np.float64]:
     """The bound of each weight after each episode, shape (episodes, 5), from the features that had been rated by then.
 
-    Infinite as long as they do not tell all of the weights. What was rated before a change of mind tells of none.
+    Infinite for weights that they do not tell yet. What was rated before a change of mind tells of none.
     """
     rated = np.array(
         [

@@ -35,11 +35,23 @@ def test_the_constrained_least_squares_estimate_attains_it():
     assert efficiency(list(estimates - truth), [bound] * len(estimates)) == pytest.approx(1.0, abs=0.02)
 
 
-def test_an_unseen_direction_is_unbounded():
-    features = np.array([[0.5, 0.0, 0.5, 0.0, 0.5]])
-    assert np.isinf(weight_bound(features, 0.1)).all()
-    # One unseen weight is known from the sum of the others.
-    assert np.isfinite(weight_bound(np.array([[0.5, 0.5, 0.5, 0.0, 0.5]]), 0.1)).all()
+def test_weights_that_are_not_seen_are_unbounded_and_leave_the_others_as_they_are():
+    """The others' bound is the limit of the closed form as what is told of the unseen ones vanishes."""
+    for features in ([0.5, 0.0, 0.25, 0.0, 0.5], [0.5, 0.4, 0.3, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.7]):
+        unseen = np.equal(features, 0.0)
+        bound = weight_bound([features], 0.1)
+        np.testing.assert_array_equal(np.isinf(bound), unseen)
+        limit = weight_bound([np.where(unseen, 1e-5, features)], 0.1)
+        np.testing.assert_allclose(bound[~unseen], limit[~unseen], rtol=1e-6)
+    assert np.isinf(weight_bound([[math.nan] * 5], 0.1)).all()
+
+
+def test_one_unseen_weight_is_known_from_the_sum_of_the_others():
+    features = np.array([0.5, 0.25, 0.4, 0.0, 0.5])
+    bound = weight_bound([features], 0.1)
+    seen = 0.1 / (4.0 * features[features > 0.0])
+    np.testing.assert_allclose(bound[features > 0.0], seen)
+    assert bound[3] == pytest.approx(np.linalg.norm(seen))
 
 
 def test_missing_ratings_carry_no_information():
