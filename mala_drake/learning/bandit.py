@@ -30,6 +30,9 @@ class Bandit(AbstractPreferenceLearner):
     knows which arm is rated best, not what the patient wants. The arm of the next episode follows from the state, so an
     update credits the arm that was planned with.
 
+    Learners are not told of failures. A failed episode is one that nobody rates, and what is not rated credits no arm:
+    an arm whose episodes all fail stays the next one for ever.
+
     The state is, for each arm, the number of rated episodes and the sum of their rewards.
 
     Attributes:
