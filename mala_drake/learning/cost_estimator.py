@@ -36,7 +36,8 @@ class CostEstimator(AbstractLearner):
     legs are scaled by the ratio of measured to predicted over the legs driven (least squares through the origin; each
     leg counts once, however often it was driven) before they enter the means. Otherwise a leg would look cheap, or
     dear, only for having been driven. The reserve of a leg is no mean: it is the most that was measured, slowly
-    forgotten.
+    forgotten, and as predicted before. The planner counts on no less than the mean (`planning.learned_costs`), which is
+    what legs in general teach of the reserve of one not driven.
 
     Like other learners it holds settings only; what it has learned is one vector of numbers: a mean and a count of each
     parameter, and the number of actions learned from.
