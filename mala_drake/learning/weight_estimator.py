@@ -6,8 +6,11 @@ why not G). A constant alpha has to be chosen by leg, because slopes differ by o
 alpha = gain / |dC/dp^g|^2 has not.
 
 The gradient is the model's, and local, while a real leg has events that come a tick sooner or later. So each step is
-put to the test, as in any trust-region method (J. Nocedal and S. Wright, Numerical Optimization, ch. 4): if the next
-leg to the place is not nearer to its prediction, the step is taken back, and the next one is at most half as long.
+put to the test, as in any trust-region method (J. Nocedal and S. Wright, Numerical Optimization, ch. 4). If the next
+leg to the place is nearer to its prediction, the trust radius doubles, up to its first value. If not, the step is taken
+back, and the radius becomes half the step's length. But a leg may also cost more because something else has changed,
+and what reappears is to be learned again: a small share of the first radius always remains, and a step that was not
+longer than that is not blamed.
 
 A common factor of all weights changes nothing about the optimum, so that learning could shrink them all together for
 nothing. The logarithms therefore sum to zero: one group grows at the expense of the others. And none leaves its bounds,
@@ -38,7 +41,8 @@ _GROUP_OF[StateIndex.YAW], _GROUP_OF[StateIndex.FORWARD_VELOCITY : STATE_SIZE], 
 
 _LEAST_SLOPE = 1e-9  # Cost by logarithm; a leg whose cost moves less with its weights says nothing about them.
 _UNKNOWN = -1.0  # As a mismatch that was found with the kept factors: to be found out by the next leg.
-_SHORTER = 0.5  # The radius after a step that has not helped, by its length.
+_SHORTER, _LONGER = 0.5, 2.0  # Radius after a step that has not helped, by its length; after one that has, by itself.
+_LEAST_TRUST = 1.0 / 256.0  # The least radius, by the first one.
 
 
 class WeightEstimator(AbstractLearner):
@@ -65,7 +69,7 @@ class WeightEstimator(AbstractLearner):
         Args:
             places: that legs lead to.
             gain: share of a Gauss-Newton step that is made, in (0, 1].
-            trust_radius: of a step at most, in the norm of the logarithms, > 0.
+            trust_radius: of a step at most and at first, in the norm of the logarithms, > 0.
             largest_factor: factors lie between its inverse and it, > 1.
 
         Raises:
@@ -108,15 +112,25 @@ class WeightEstimator(AbstractLearner):
         if slope < _LEAST_SLOPE:
             return after
         row[_UPDATES] += 1.0
-        if row[_BEST] != _UNKNOWN and abs(mismatch) >= row[_BEST]:
-            row[_RADIUS] = _SHORTER * np.linalg.norm(row[_TRIED] - row[_KEPT])
-            row[_TRIED], row[_BEST] = row[_KEPT], _UNKNOWN
-            return after
+        if row[_BEST] != _UNKNOWN:
+            helped = abs(mismatch) < row[_BEST]
+            row[_RADIUS] = self._next_radius(row, helped=helped)
+            if not helped:
+                row[_TRIED], row[_BEST] = row[_KEPT], _UNKNOWN
+                return after
         row[_KEPT], row[_BEST] = row[_TRIED], abs(mismatch)
         wanted = self._gain * mismatch / slope
         step = max(-row[_RADIUS], min(wanted, row[_RADIUS]))
         row[_TRIED] = project_to_balanced_box(row[_KEPT] - step * slopes / slope, -self._bound, self._bound)
         return after
+
+    def _next_radius(self, row: FloatArray, *, helped: bool) -> float:
+        """The trust radius after the step of a place has been tried."""
+        radius = float(row[_RADIUS])
+        if helped:
+            return min(_LONGER * radius, self._trust_radius)
+        length, least = float(np.linalg.norm(row[_TRIED] - row[_KEPT])), _LEAST_TRUST * self._trust_radius
+        return max(_SHORTER * length, least) if length > least else radius
 
     def factors(self, state: FloatArray, place: str) -> tuple[float, ...]:
         """The factors of a place, in the order of `WEIGHT_GROUPS`."""

@@ -67,23 +67,63 @@ def test_a_step_that_does_not_help_is_taken_back_and_the_next_one_is_shorter():
     assert np.linalg.norm(second - first) == pytest.approx(0.5)
     np.testing.assert_array_equal(third, first)
     assert np.linalg.norm(fourth - third) == pytest.approx(0.25)
-    assert np.linalg.norm(fifth - fourth) == pytest.approx(0.25)  # The one before has helped.
+    assert np.linalg.norm(fifth - fourth) == pytest.approx(0.5)  # The one before has helped.
 
 
-def test_where_the_mismatch_does_not_answer_the_weights_come_to_rest():
-    driven = visits([0.01] * 40)
-    assert np.abs(driven[-1]).max() < 1e-3
+def test_where_the_mismatch_does_not_answer_the_weights_stay_about_where_they_are():
+    driven = visits([0.05] * 40, trust_radius=0.5)
+    np.testing.assert_array_equal(driven[::2], np.zeros((21, 4)))
+    tried = np.linalg.norm(driven[1::2], axis=1)
+    assert tried[0] > 0.07
+    assert (np.diff(tried) <= 0.0).all()
+    assert tried[-1] == pytest.approx(0.5 / 256.0)
+
+
+SLOPES = np.array([0.3, -0.1, 0.2, 0.0])
+"""Of the mismatch by the logarithms, as `GRADIENT` has them."""
+
+
+def answers(learner, state, legs, offset, *, steepness=1.0):
+    """Mismatches that answer the weights, `steepness` times as much as the learner is told, and the state after."""
+    mismatches = []
+    for _ in range(legs):
+        logarithms = np.log(learner.factors(state, "stove"))
+        mismatches.append(offset + steepness * SLOPES @ logarithms)
+        state = learner.update(state, "stove", mismatches[-1], GRADIENT)
+    return np.array(mismatches), state
 
 
 def test_the_mismatch_falls_even_if_the_gradient_is_several_times_too_small():
     learner = WeightEstimator(PLACES)
-    state, slopes = learner.initial_state(), np.array([0.3, -0.1, 0.2, 0.0])
-    mismatches = []
-    for _ in range(15):
-        logarithms = np.log(learner.factors(state, "stove"))
-        mismatches.append(0.05 + 5.0 * slopes @ logarithms)  # The learner is told a fifth of this gradient.
-        state = learner.update(state, "stove", mismatches[-1], GRADIENT)
-    assert np.abs(mismatches[-4:]).min() < 0.1 * mismatches[0]
+    mismatches, _ = answers(learner, learner.initial_state(), 15, 0.05, steepness=5.0)
+    assert np.abs(mismatches[-4:]).max() < 0.1 * mismatches[0]
+
+
+@pytest.mark.parametrize("past", [[1e-4, *[0.3] * 10], [0.0, *[0.3] * 10], [0.05] * 40, [0.05, 0.0, 0.05]])
+def test_whatever_was_in_the_past_a_mismatch_that_answers_is_learned(past):
+    learner = WeightEstimator(PLACES)
+    state = learner.initial_state()
+    for mismatch in past:
+        state = learner.update(state, "stove", mismatch, GRADIENT)
+    mismatches, _ = answers(learner, state, 15, 0.05)
+    assert np.abs(mismatches[-1]) < 0.1 * 0.05
+
+
+def test_a_mismatch_that_is_gone_and_reappears_is_learned_again():
+    learner = WeightEstimator(PLACES)
+    state = learner.initial_state()
+    for offset in (0.05, -0.03, 0.08):
+        mismatches, state = answers(learner, state, 25, offset)
+        assert np.abs(mismatches[-1]) < 0.1 * abs(mismatches[0])
+
+
+def test_weights_that_have_stood_on_their_bound_leave_it_when_the_mismatch_turns():
+    learner = WeightEstimator(PLACES, largest_factor=1.2)
+    mismatches, state = answers(learner, learner.initial_state(), 30, 5.0)
+    assert np.log(learner.factors(state, "stove")).min() == pytest.approx(-math.log(1.2))
+    assert mismatches[-1] > 4.0
+    mismatches, _ = answers(learner, state, 15, 0.0)
+    assert np.abs(mismatches[-1]) < 0.1 * abs(mismatches[0])
 
 
 def test_a_common_factor_is_not_learned():
