@@ -78,7 +78,7 @@ def run_experiment(
         summary = summarise_experiment(experiment, execution.out, failures)
         replace_durably(execution.out / SUMMARY_FILE, json.dumps(summary, indent=2, allow_nan=False) + "\n")
         if kind.explanations is not None and summary["totals"]["episodes"]:
-            write_condition_page(execution.out, kind.name, kind.explanations)
+            write_condition_page(execution.out, experiment, kind.explanations)
     return summary
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -108,8 +108,12 @@ class Results:
         return PROFILES.get(profile)
 
 
-def load_results(folder: Path) -> Results:
+def load_results(folder: Path, *, only: Iterable[RunName] | None = None) -> Results:
     """Reads a folder of results.
+
+    Args:
+        folder: of a run or an experiment.
+        only: the runs to look for; None for all that are there.
 
     Raises:
         BadInput: when the folder holds no episode, or a line that is not an episode's (a torn last line is left out).
@@ -118,7 +122,7 @@ def load_results(folder: Path) -> Results:
         raise BadInput(str(folder), "is not a folder", "one that `run --out` or `experiment --out` has written")
     notes: list[str] = []
     plan = read_plan(folder, notes)
-    runs = [run for path in sorted(folder.rglob(EPISODES_FILE)) if (run := _read_run(folder, path, notes))]
+    runs = [run for path in _episode_files(folder, only) if (run := _read_run(folder, path, notes))]
     if not runs:
         expected = f"{EPISODES_FILE} of `run --out` or `experiment --out` in it"
         raise BadInput(str(folder), "has no episodes", expected)
@@ -138,6 +142,13 @@ def _earlier_episodes(scenario: Mapping[str, Any]) -> int:
     patient = scenario.get("patient")
     told = patient.get("earlier_episodes") if isinstance(patient, dict) else None
     return max(told, 0) if isinstance(told, int) else 0
+
+
+def _episode_files(folder: Path, only: Iterable[RunName] | None) -> list[Path]:
+    """Where the episodes of runs are, sorted."""
+    if only is None:
+        return sorted(folder.rglob(EPISODES_FILE))
+    return sorted(path for run in only if (path := folder / run.folder / EPISODES_FILE).is_file())
 
 
 def _read_run(folder: Path, path: Path, notes: list[str]) -> Run | None:
