@@ -3,16 +3,101 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
+from mala_drake.control.weights_to_costs import DEFAULT_TRANSLATION
 from mala_drake.errors import BadInput
+from mala_drake.experiments import record_form as form
 from mala_drake.experiments.episode_record import EpisodeRecord
+from mala_drake.learning.weight_estimator import WEIGHT_GROUPS
+from mala_drake.preferences import CRITERIA
 
-_PLAIN: Mapping[str, tuple[type, ...]] = {"str": (str,), "int": (int,), "bool": (bool,), "float": (int, float)}
+_BY_CRITERION = form.entry(dict.fromkeys(CRITERIA, form.measured))
+_WEIGHTS = form.list_of(form.measured, len(CRITERIA))
+_MEASURED_LIST = form.list_of(form.measured)
+_VELOCITIES = 3  # Of the errors a tick ahead: v_x, v_y and the yaw rate.
+_GAIN_ROWS, _GAIN_COLUMNS = DEFAULT_TRANSLATION.gains.shape
+
+_EXECUTED_ACTION = form.entry(
+    {"action": form.action},
+    {
+        "outcome": form.text,
+        "external_reward": form.or_null(form.number),
+        "closed_loop_cost": form.or_null(form.number),
+        "state_mismatch": form.or_null(form.number),
+        "cost_mismatch": form.or_null(form.number),
+    },
+)
+
+_DISPLACED_LEG = form.entry(
+    {
+        "place": form.text,
+        "outcome": form.text,
+        "mismatch": form.number,
+        "moved": form.flag,
+        "x": form.number,
+        "y": form.number,
+        "distance_to_true_m": form.number,
+    },
+    {
+        "closed_loop_cost": form.or_null(form.number),
+        "sensitivity": form.or_null(form.text),
+        "sensitivity_deviation": form.or_null(form.number),
+    },
+)
+
+_FIELDS: Mapping[str, form.Form] = MappingProxyType(
+    {
+        "episode": form.whole,
+        "task": form.text,
+        "profile": form.text,
+        "seed": form.whole,
+        "success": form.flag,
+        "failure": form.or_null(form.text),
+        "actions": form.list_of(form.action),
+        "plan_variant": form.text,
+        "plan_cost": form.measured,
+        "replans": form.whole,
+        "features": _BY_CRITERION,
+        "predicted_features": _BY_CRITERION,
+        "ratings": form.list_of(form.or_null(form.number), len(CRITERIA)),
+        "weights_before": _WEIGHTS,
+        "weights_after": _WEIGHTS,
+        "weights_std": form.or_null(_WEIGHTS),
+        "distance_to_true": form.measured,
+        "sim_time_s": form.measured,
+        "solver": form.text,
+        "mpc_solves": form.whole,
+        "mpc_failures": form.whole,
+        "min_clearance_m": form.measured,
+        "collisions": form.whole,
+        "terminal_errors_m": _MEASURED_LIST,
+        "terminal_yaw_errors_rad": _MEASURED_LIST,
+        "terminal_speeds_m_s": _MEASURED_LIST,
+        "mismatches": form.whole,
+        "battery_start": form.measured,
+        "battery_end": form.measured,
+        "mpc_not_converged": form.or_null(form.whole),
+        "learned_dynamics": form.or_null(form.mapping_to(form.list_of(form.measured, 2))),
+        "dynamics_errors": form.or_null(form.mapping_to(form.list_of(form.measured, _VELOCITIES))),
+        "learned_weights": form.or_null(form.mapping_to(form.list_of(form.positive, len(WEIGHT_GROUPS)))),
+        "learned_translation": form.or_null(form.list_of(form.list_of(form.number, _GAIN_COLUMNS), 0, _GAIN_ROWS)),
+        "executed_actions": form.or_null(form.list_of(_EXECUTED_ACTION)),
+        "timing": form.mapping_to(form.measured, key=form.name_with_unit),
+        "displaced_legs": form.list_of(_DISPLACED_LEG),
+    }
+)
+"""What each field of a record is; `leg_outcomes` is not in the file."""
+
+_NEEDED = tuple(
+    item.name
+    for item in fields(EpisodeRecord)
+    if item.name in _FIELDS and item.default is MISSING and item.default_factory is MISSING
+)
 
 
 def read_episodes(path: Path) -> tuple[list[EpisodeRecord], bool]:
@@ -43,26 +128,8 @@ def _record(data: Any, *, where: str) -> EpisodeRecord:
     """The record of one line; keys that a newer version may have added are passed over."""
     if not isinstance(data, dict):
         raise BadInput(where, "is not an object", "an episode")
-    values: dict[str, Any] = {"leg_outcomes": []}  # Not in the file.
-    for item in fields(EpisodeRecord):
-        if item.name in data:
-            values[item.name] = _restored(data[item.name], str(item.type), where=f"{where}: {item.name}")
-        elif item.name not in values and item.default is MISSING and item.default_factory is MISSING:
-            raise BadInput(where, f"has no {item.name!r}", "a whole episode record")
-    return EpisodeRecord(**values)
-
-
-def _restored(value: Any, kind: str, *, where: str) -> Any:
-    """The value as the record has it: what was written as null because it was not finite is NaN again."""
-    if kind == "float" and value is None:
-        return math.nan
-    expected = _PLAIN.get(kind if value is None else kind.removesuffix(" | None"))
-    if expected is not None and (not isinstance(value, expected) or (isinstance(value, bool) and kind != "bool")):
-        raise BadInput(where, repr(value), f"a value of type {kind}")
-    if kind == "dict[str, float]" and isinstance(value, dict):
-        return {key: _restored(item, "float", where=f"{where}.{key}") for key, item in value.items()}
-    if kind.startswith("list[float]") and isinstance(value, list):
-        return [_restored(item, "float", where=where) for item in value]
-    if value is None and "None" not in kind:
-        raise BadInput(where, "null", f"a value of type {kind}")
-    return value
+    for name in _NEEDED:
+        if name not in data:
+            raise BadInput(where, f"has no {name!r}", "a whole episode record")
+    values = {name: read(data[name], f"{where}: {name}") for name, read in _FIELDS.items() if name in data}
+    return EpisodeRecord(**values, leg_outcomes=[])

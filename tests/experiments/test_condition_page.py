@@ -12,7 +12,7 @@ MEANINGS = {"full": "the scenario as it is", "no_learning": "nothing is learned"
 
 
 def experiment(*conditions):
-    return Experiment("ablations", Scenario(), dict.fromkeys(conditions, {}), ("speed_oriented",), (0,))
+    return Experiment("ablations", Scenario(), {condition: {} for condition in conditions}, ("speed_oriented",), (0,))
 
 
 def write(folder, record, conditions):

@@ -154,7 +154,7 @@ def test_nothing_at_all_is_one_line(tmp_path):
         (lambda lines: [lines[0].replace('"seed": 0', '"seed": 5')], "seed 5; expected speed_oriented, seed 0"),
         (lambda lines: [lines[0].replace('"features": {', '"other": {')], "line 1: has no 'features'"),
         (lambda lines: [lines[0].replace('"success": true', '"success": 1')], "line 1: success: 1"),
-        (lambda lines: [lines[0].replace('"collisions": 0', '"collisions": null')], "line 1: collisions: None"),
+        (lambda lines: [lines[0].replace('"collisions": 0', '"collisions": null')], "line 1: collisions: null"),
         (lambda lines: [lines[0].replace('"features": {', '"features": null, "x": {')], "line 1: features: null"),
     ],
 )
