@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from mala_drake.errors import BadInput
+from mala_drake.experiments.durable_files import append_durably, writing
 from mala_drake.preferences import CRITERIA
 
 EPISODES_FILE = "episodes.jsonl"
@@ -194,13 +195,18 @@ class EpisodeFile:
         """
         self.path = folder / EPISODES_FILE
         check_writable(self.path)
-        self._file = self.path.open("w", encoding="utf-8")
+        with writing(self.path):
+            self._file = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o666)
 
     def append(self, record: EpisodeRecord) -> None:
-        """Writes one record and flushes it."""
-        self._file.write(record.to_json() + "\n")
-        self._file.flush()
+        """Writes one record.
+
+        Raises:
+            BadInput: when it cannot be written, for example because the disk is full.
+        """
+        with writing(self.path):
+            append_durably(self._file, record.to_json() + "\n")
 
     def close(self) -> None:
         """Closes the file."""
-        self._file.close()
+        os.close(self._file)

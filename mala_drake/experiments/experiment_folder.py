@@ -13,7 +13,7 @@ from typing import Any
 
 import mala_drake
 from mala_drake.errors import BadInput
-from mala_drake.experiments.durable_files import TEMPORARY, replace_durably
+from mala_drake.experiments.durable_files import TEMPORARY, replace_durably, writing
 from mala_drake.experiments.experiment import Experiment
 from mala_drake.experiments.run_summary import SUMMARY_FILE
 from mala_drake.fingerprint import fingerprint
@@ -95,7 +95,8 @@ def experiment_folder(
         else:
             refuse_differences(begun, experiment, folder)
         for outdated in (folder / SUMMARY_FILE, folder / f"{experiment.name}.md"):
-            outdated.unlink(missing_ok=True)
+            with writing(outdated):
+                outdated.unlink(missing_ok=True)
         yield
 
 

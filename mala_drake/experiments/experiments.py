@@ -62,7 +62,8 @@ def run_experiment(
     """Runs an experiment, or the rest of one, and returns the summary that `summary.json` holds.
 
     Raises:
-        BadInput: when an option does not fit, or the folder cannot be used; nothing has been changed there then.
+        BadInput: when an option does not fit, or the folder cannot be used; nothing has been changed there then. Later
+            only when what is written does not fit on the disk any more.
     """
     begun = begun_in(execution.out, resume=True) if execution.resume else None
     if begun is not None and begun.name != kind.name:

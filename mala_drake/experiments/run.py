@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from pydrake.geometry import Meshcat
 
+from mala_drake.experiments.durable_files import replace_durably
 from mala_drake.experiments.episode import Carried, simulate_episode
 from mala_drake.experiments.episode_record import EPISODES_FILE, EpisodeFile, EpisodeRecord, check_writable
 from mala_drake.experiments.run_summary import SUMMARY_FILE, summarise
@@ -57,7 +58,8 @@ def run_scenario(scenario: Scenario, options: RunOptions, *, watcher: Watcher | 
     Results are appended to `options.out` as they come; what was written stays, whatever happens later.
 
     Raises:
-        BadInput: for a scenario that cannot be simulated or a file that cannot be written, before anything runs.
+        BadInput: for a scenario that cannot be simulated or a file that cannot be written, before anything runs; later
+            only when what is written does not fit on the disk any more.
     """
     Validate(scenario)
     for path in options.files:
@@ -77,8 +79,7 @@ def run_scenario(scenario: Scenario, options: RunOptions, *, watcher: Watcher | 
             recording.finish()
     summary = summarise(scenario, records)
     if options.out:
-        text = json.dumps(summary, indent=2)
-        (options.out / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+        replace_durably(options.out / SUMMARY_FILE, json.dumps(summary, indent=2) + "\n")
     return summary
 
 

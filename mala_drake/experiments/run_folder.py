@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Any
 
 from mala_drake.errors import BadInput
-from mala_drake.experiments.durable_files import append_durably, replace_durably
+from mala_drake.experiments.durable_files import append_durably, replace_durably, writing
 from mala_drake.experiments.episode import Carried
 from mala_drake.experiments.episode_record import EPISODES_FILE
 
@@ -65,11 +65,9 @@ class RunFolder:
         """
         states = {self.episodes: self.carried, self.episodes + 1: carried}
         data = {"carried_after": {str(count): state.to_json() for count, state in states.items()}}
-        try:
-            replace_durably(self.path / CHECKPOINT_FILE, json.dumps(data, allow_nan=False) + "\n")
+        replace_durably(self.path / CHECKPOINT_FILE, json.dumps(data, allow_nan=False) + "\n")
+        with writing(self.path / EPISODES_FILE):
             append_durably(self._file, line + "\n")
-        except OSError as error:
-            raise BadInput(str(self.path), f"cannot be written ({error.strerror})", "room for the results") from None
         self.episodes, self.carried = self.episodes + 1, carried
 
     def close(self) -> None:

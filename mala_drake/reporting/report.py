@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from mala_drake.errors import BadInput
+from mala_drake.experiments.durable_files import writing
 from mala_drake.experiments.episode_record import check_writable
 from mala_drake.reporting.figures.bound import bound_picture
 from mala_drake.reporting.figures.conditions import condition_picture
@@ -40,6 +41,7 @@ from mala_drake.reporting.wording import words
 from mala_drake.ward.ward_map import LoadWard, Ward
 
 PAGE = "report.html"
+_FIGURES, _TABLES = "figures", "tables"  # Folders.
 _TITLE = "Learning what the patient wants"
 _TARGETS_TITLE = "Finding places that are not where the map says"
 
@@ -62,6 +64,9 @@ def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
     results = load_results(folder)
     out = folder / "report" if out is None else out
     check_writable(out / PAGE)
+    for name in (_FIGURES, _TABLES):
+        with writing(out / name):
+            (out / name).mkdir(exist_ok=True)
     with styled():
         ward = _ward(results)
         sections = tuple(_sections(results, ward))
@@ -73,7 +78,8 @@ def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
             sections=sections,
         )
         written = [path for item in _content(sections) for path in _write(item, out)]
-    (out / PAGE).write_text(page, encoding="utf-8")
+    with writing(out / PAGE):
+        (out / PAGE).write_text(page, encoding="utf-8")
     return (out / PAGE, *written)
 
 
@@ -163,14 +169,12 @@ def _content(sections: Iterable[Section]) -> Iterator[Picture | Table]:
 
 def _write(item: Picture | Table, out: Path) -> Iterator[Path]:
     if isinstance(item, Picture):
-        folder = out / "figures"
-        folder.mkdir(parents=True, exist_ok=True)
-        yield from item.write(folder)
+        with writing(out / _FIGURES / item.name):
+            yield from item.write(out / _FIGURES)
         return
-    folder = out / "tables"
-    folder.mkdir(parents=True, exist_ok=True)
     forms: tuple[tuple[str, Callable[[], str]], ...] = ((".md", item.to_markdown), (".tex", item.to_latex))
     for suffix, text in forms:
-        path = folder / (item.name + suffix)
-        path.write_text(text(), encoding="utf-8")
+        path = out / _TABLES / (item.name + suffix)
+        with writing(path):
+            path.write_text(text(), encoding="utf-8")
         yield path

@@ -6,6 +6,7 @@ import os
 
 import pytest
 
+from mala_drake.errors import BadInput
 from mala_drake.experiments import durable_files as mut
 
 
@@ -24,7 +25,7 @@ def test_a_write_that_fails_leaves_the_old_content(tmp_path, monkeypatch):
 
     with monkeypatch.context() as patch:
         patch.setattr(os, "write", full)
-        with pytest.raises(OSError, match="No space"):
+        with pytest.raises(BadInput, match=r"file: cannot be written \(No space left on device\)"):
             mut.replace_durably(tmp_path / "file", "new")
     assert (tmp_path / "file").read_text() == "old"
 

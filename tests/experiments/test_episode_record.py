@@ -181,6 +181,14 @@ def test_each_record_is_on_the_disk_before_the_file_is_closed(tmp_path, episode_
     file.close()
 
 
+def test_an_episode_that_the_disk_has_no_room_for_is_told_in_one_line(tmp_path, episode_record):
+    (tmp_path / "episodes.jsonl").symlink_to("/dev/full")
+    file = mut.EpisodeFile(tmp_path)
+    with pytest.raises(BadInput, match=r"episodes\.jsonl: cannot be written \(No space left on device\)"):
+        file.append(episode_record())
+    file.close()
+
+
 def test_a_new_file_replaces_an_earlier_one(tmp_path):
     (tmp_path / "episodes.jsonl").write_text("old\n")
     mut.EpisodeFile(tmp_path).close()

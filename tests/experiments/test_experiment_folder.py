@@ -160,6 +160,12 @@ def test_a_folder_that_cannot_be_made_is_told_in_one_line(tmp_path):
         begin(tmp_path / "file" / "results")
 
 
+def test_what_is_begun_in_a_folder_that_it_cannot_be_written_to_is_told_in_one_line(tmp_path):
+    (tmp_path / "experiment.json.new").mkdir()
+    with pytest.raises(BadInput, match=r"experiment\.json: cannot be written"):
+        begin(tmp_path)
+
+
 def test_what_was_begun_with_another_ward_map_of_ones_own_is_not_gone_on_with(tmp_path):
     ward = tmp_path / "own.ward.yaml"
     ward.write_text("title: first\n")

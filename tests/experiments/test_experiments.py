@@ -179,6 +179,20 @@ def test_ablations_have_a_page_of_their_own(tmp_path):
     assert "crisp grounding" in (out / "ablations.md").read_text()
 
 
+def test_a_summary_that_cannot_be_written_is_told_in_one_line_and_leaves_the_episodes(tmp_path):
+    (tmp_path / "short.yaml").write_text(SHORT)
+    options = ExperimentOptions(scenario=tmp_path / "short.yaml", profiles=("safety_first",), seeds=(0,), episodes=1)
+    out = tmp_path / "results"
+
+    class Meddler(Nobody):
+        def on_start(self, **numbers):
+            (out / "summary.json.new").mkdir()
+
+    with pytest.raises(BadInput, match=r"summary\.json: cannot be written"):
+        mut.run_experiment(CONVERGENCE, options, mut.Execution(out=out, executor="serial"), watcher=Meddler())
+    assert lines_in(out) == 1
+
+
 @pytest.mark.slow
 def test_killed_again_and_again_it_comes_to_the_same_as_never_killed(tmp_path):
     """Whole episodes of both tasks on the physics, delivered and learned from."""

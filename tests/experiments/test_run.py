@@ -129,6 +129,13 @@ def test_a_mistake_leaves_earlier_results_alone(tmp_path, mistake):
     assert (tmp_path / "episodes.jsonl").read_text() == "old"
 
 
+def test_a_summary_that_cannot_be_written_is_told_in_one_line_and_leaves_the_episodes(tmp_path):
+    (tmp_path / "summary.json.new").mkdir()
+    with pytest.raises(BadInput, match=r"summary\.json: cannot be written"):
+        mut.run_scenario(short(), mut.RunOptions(out=tmp_path))
+    assert len((tmp_path / "episodes.jsonl").read_text().splitlines()) == 1
+
+
 def test_without_a_folder_nothing_is_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     mut.run_scenario(short(), mut.RunOptions(out=None))
