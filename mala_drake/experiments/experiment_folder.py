@@ -14,7 +14,7 @@ from typing import Any
 import mala_drake
 from mala_drake.errors import BadInput
 from mala_drake.experiments.durable_files import TEMPORARY, replace_durably, writing
-from mala_drake.experiments.experiment import Experiment
+from mala_drake.experiments.experiment import Experiment, RunName
 from mala_drake.experiments.run_summary import SUMMARY_FILE
 from mala_drake.fingerprint import fingerprint
 
@@ -25,24 +25,28 @@ _LOCK_FILE = ".lock"
 _OWN_FILES = (_LOCK_FILE, EXPERIMENT_FILE + TEMPORARY)
 
 
-def begun_in(folder: Path, *, resume: bool = False) -> Experiment | None:
-    """The experiment that was begun in a folder, or None.
-
-    Args:
-        folder: of the experiment.
-        resume: whether it is to be gone on with.
+def begun_in(folder: Path) -> Experiment | None:
+    """The experiment that was begun in a folder and can be gone on with, or None.
 
     Raises:
-        BadInput: when its file cannot be read, or it is to be gone on with and was begun by other code, or with other
-            models or domains, than are here now.
+        BadInput: when its file cannot be read, or it was begun by other code, or with other models or domains, than are
+            here now.
     """
     path = folder / EXPERIMENT_FILE
     if not path.exists():
         return None
     data = _read(path)
-    if resume and isinstance(data, dict):
+    if isinstance(data, dict):
         _refuse_other_code(data, path)
     return Experiment.from_json(data, where=str(path))
+
+
+def _runs_in(folder: Path) -> tuple[RunName, ...]:
+    """The runs that were begun in a folder, whether or not this version knows the scenario that they are of."""
+    path = folder / EXPERIMENT_FILE
+    data = _read(path)
+    known = {**data, "scenario": {}} if isinstance(data, dict) else data
+    return Experiment.from_json(known, where=str(path)).runs
 
 
 def _refuse_other_code(data: dict[str, Any], path: Path) -> None:
@@ -86,13 +90,12 @@ def experiment_folder(
             experiment by this code, or when another process writes there.
     """
     with _held(folder):
-        begun = begun_in(folder, resume=resume)
-        if begun is None or overwrite:
-            _make_room(folder, begun, resume=resume)
+        if overwrite or not (folder / EXPERIMENT_FILE).exists():
+            _make_room(folder, resume=resume)
             replace_durably(folder / EXPERIMENT_FILE, json.dumps(experiment.to_json(), indent=2) + "\n")
         elif not resume:
             raise BadInput(str(folder), "holds an experiment", "--resume to go on with it, or --overwrite")
-        else:
+        elif begun := begun_in(folder):
             refuse_differences(begun, experiment, folder)
         for outdated in (folder / SUMMARY_FILE, folder / f"{experiment.name}.md"):
             with writing(outdated):
@@ -119,10 +122,10 @@ def _held(folder: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
-def _make_room(folder: Path, begun: Experiment | None, *, resume: bool) -> None:
-    """Removes what `begun` has left; refuses a folder with anything in it that is no experiment's."""
-    if begun is not None:
-        for run in begun.runs:
+def _make_room(folder: Path, *, resume: bool) -> None:
+    """Removes what an experiment has left; refuses a folder with anything in it that is no experiment's."""
+    if (folder / EXPERIMENT_FILE).exists():
+        for run in _runs_in(folder):
             shutil.rmtree(folder / run.folder, ignore_errors=True)
         return
     others = sorted(path.name for path in folder.iterdir() if path.name not in _OWN_FILES)

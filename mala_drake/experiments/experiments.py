@@ -65,7 +65,7 @@ def run_experiment(
         BadInput: when an option does not fit, or the folder cannot be used; nothing has been changed there then. Later
             only when what is written does not fit on the disk any more.
     """
-    begun = begun_in(execution.out, resume=True) if execution.resume else None
+    begun = begun_in(execution.out) if execution.resume else None
     if begun is not None and begun.name != kind.name:
         raise BadInput("experiment", kind.name, f"{begun.name}, which was begun in {execution.out}")
     experiment = chosen_experiment(kind, options, begun=begun)

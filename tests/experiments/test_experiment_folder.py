@@ -72,6 +72,20 @@ def test_to_overwrite_removes_the_results_and_nothing_else(tmp_path):
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
+def test_an_experiment_on_what_this_version_does_not_know_is_overwritten(tmp_path):
+    begin(tmp_path)
+    leave_results(tmp_path)
+    told = json.loads((tmp_path / "experiment.json").read_text())
+    told["scenario"] = {**told["scenario"], "of_another_version": 3}
+    (tmp_path / "experiment.json").write_text(json.dumps({**told, "fingerprint": "0123456789abcdef"}))
+    for options, words in ({"resume": True}, "--overwrite begins anew"), ({}, "or --overwrite"):
+        with pytest.raises(BadInput, match=words):
+            begin(tmp_path, **options)
+    begin(tmp_path, overwrite=True)
+    assert list(tmp_path.rglob("episodes.jsonl")) == []
+    assert mut.begun_in(tmp_path) == EXPERIMENT
+
+
 @pytest.mark.parametrize("options", [{}, {"resume": True}, {"overwrite": True}])
 def test_a_folder_that_is_no_experiments_is_left_alone(tmp_path, options):
     (tmp_path / "episodes.jsonl").write_text("of a run")
@@ -119,15 +133,14 @@ def test_what_other_code_began_is_not_gone_on_with(tmp_path, changes, words):
     written = {key: value for key, value in told.items() if value is not None}
     (tmp_path / "experiment.json").write_text(json.dumps(written))
     before = files(tmp_path)
-    for resume in (lambda: mut.begun_in(tmp_path, resume=True), lambda: begin(tmp_path, resume=True)):
+    for resume in (lambda: mut.begun_in(tmp_path), lambda: begin(tmp_path, resume=True)):
         with pytest.raises(BadInput, match=words) as caught:
             resume()
         assert "--overwrite begins anew" in str(caught.value)
         assert "\n" not in str(caught.value)
     assert files(tmp_path) == before
-    assert mut.begun_in(tmp_path) == EXPERIMENT  # It can still be read,
-    begin(tmp_path, overwrite=True)  # and replaced.
-    assert mut.begun_in(tmp_path, resume=True) == EXPERIMENT
+    begin(tmp_path, overwrite=True)  # But it can be replaced.
+    assert mut.begun_in(tmp_path) == EXPERIMENT
 
 
 def test_the_same_code_goes_on_whatever_its_version_is_called(tmp_path):
