@@ -131,8 +131,6 @@ def _base(options: ExperimentOptions, size: Size, begun: Experiment | None) -> S
         base = LoadScenario(options.scenario, defaults=usual)
     else:
         base = copy.deepcopy(begun.base) if begun else usual
-    if base.ward:
-        base.ward = str(Path(base.ward).resolve())  # For whoever goes on from another folder.
     before = begun.base if begun else base
     base.task = before.task if options.task is None else options.task
     base.episodes = before.episodes if options.episodes is None else options.episodes

@@ -68,13 +68,13 @@ def write_report(folder: Path, out: Path | None = None) -> tuple[Path, ...]:
         with writing(out / name):
             (out / name).mkdir(exist_ok=True)
     with styled():
-        ward = _ward(results)
+        ward, notes = _ward(results)
         sections = tuple(_sections(results, ward))
         page = report_page(
             title=_TARGETS_TITLE if has_targets(results) else _TITLE,
             lead=_lead(results),
             headline=(*target_headline(results, ward), *headline(results)),
-            problems=problems(results),
+            problems=(*problems(results), *notes),
             sections=sections,
         )
         written = [path for item in _content(sections) for path in _write(item, out)]
@@ -154,13 +154,17 @@ def _lead(results: Results) -> str:
     )
 
 
-def _ward(results: Results) -> Ward:
-    """The ward that was run in; the one that comes with the package when it cannot be read any more."""
+def _ward(results: Results) -> tuple[Ward, tuple[str, ...]]:
+    """The ward that was run in, and notes: when it cannot be read any more, it is the one of the package."""
     told = results.told(results.main, "ward")
     try:
-        return LoadWard(str(told)) if told else LoadWard()
-    except BadInput:
-        return LoadWard()
+        return LoadWard(str(told) if told else None), ()
+    except BadInput as error:
+        note = (
+            f"The ward map {told} cannot be used ({error.what}): places, ways and distances to places are shown on the "
+            "map that comes with the package, which is not the one that was run in."
+        )
+        return LoadWard(), (note,)
 
 
 def _content(sections: Iterable[Section]) -> Iterator[Picture | Table]:

@@ -23,6 +23,7 @@ def LoadScenario(path: str | Path | None = None, *, defaults: Scenario | None = 
     file = Path(path) if path is not None else models_folder() / "default.scenario.yaml"
     scenario = load_typed(Scenario, file, defaults=Scenario() if defaults is None else defaults)
     if scenario.ward:
-        scenario.ward = str(file.parent / scenario.ward)
+        # Whole, for whoever reads the results from another folder.
+        scenario.ward = str((file.parent / scenario.ward).resolve())
     Validate(scenario, where=file.name)
     return scenario

@@ -18,6 +18,7 @@ from matplotlib.image import imread
 import mala_drake
 from mala_drake.errors import BadInput
 from mala_drake.reporting import report as mut
+from mala_drake.reporting.table import Group, Table
 from mala_drake.scenario import Scenario
 
 LOADS = {"src", "href", "xlink:href", "srcset", "data", "action", "poster"}
@@ -115,7 +116,7 @@ def test_problems_stand_above_all_figures(written):
     assert "No episode failed" not in text
 
 
-def test_one_failed_episode_is_enough(tmp_path, simulate_results):
+def test_one_failed_episode_in_a_ward_that_is_gone_is_enough(tmp_path, simulate_results):
     """Unrated, and with nothing measured; what the failure says is text and no markup."""
 
     def fail(record):
@@ -133,9 +134,12 @@ def test_one_failed_episode_is_enough(tmp_path, simulate_results):
         )
 
     simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=1, change=fail)
-    (tmp_path / "summary.json").write_text("{}")
-    page = mut.write_report(tmp_path)[0]
-    assert "1 of 1 episode failed (1 × the way is <blocked>)" in Page(page.read_text(encoding="utf-8")).text
+    ward = tmp_path / "gone.ward.yaml"
+    (tmp_path / "summary.json").write_text(json.dumps({"scenario": {"ward": str(ward)}}))
+    text = Page(mut.write_report(tmp_path)[0].read_text(encoding="utf-8")).text
+    assert "1 of 1 episode failed (1 × the way is <blocked>)" in text
+    assert f"The ward map {ward} cannot be used (cannot be read" in text
+    assert "the map that comes with the package" in text
 
 
 def test_a_plain_run_of_an_unknown_patient_is_shown_with_intervals_and_without_truth(tmp_path, simulate_results):
@@ -204,7 +208,7 @@ def test_a_report_that_cannot_be_written_is_refused_before_any_work(tmp_path, si
         mut.write_report(tmp_path / "results", tmp_path / "file")
 
 
-@pytest.mark.parametrize("name", ["figures", "tables", "report.html", "tables/execution.md"])
+@pytest.mark.parametrize("name", ["figures", "tables", "report.html"])
 def test_what_is_in_the_way_of_a_report_is_told_in_one_line(tmp_path, simulate_results, name):
     """A file where a folder is to be, or a folder where a file is to be."""
     folder = simulate_results(tmp_path, profiles=("speed_oriented",), seeds=(0,), episodes=1)
@@ -214,3 +218,10 @@ def test_what_is_in_the_way_of_a_report_is_told_in_one_line(tmp_path, simulate_r
     with pytest.raises(BadInput, match=path.stem) as refused:
         mut.write_report(folder)
     assert "\n" not in str(refused.value)
+
+
+def test_what_is_in_the_way_of_a_table_is_told_in_one_line(tmp_path):
+    table = Table("execution", "Nothing.", ("name",), (Group((("x",),)),))
+    (tmp_path / "tables" / "execution.md").mkdir(parents=True)
+    with pytest.raises(BadInput, match=r"execution\.md: cannot be written"):
+        list(mut._write(table, tmp_path))

@@ -37,3 +37,11 @@ def test_a_ward_is_found_from_the_scenario_s_own_folder(tmp_path, load_scenario)
     plain_map = (models_folder() / "care_center.ward.yaml").read_text(encoding="utf-8")
     (tmp_path / "mine.ward.yaml").write_text(plain_map, encoding="utf-8")
     assert load_scenario("ward: mine.ward.yaml").load_ward() == Scenario().load_ward()
+
+
+def test_the_path_of_a_ward_is_whole_for_whoever_reads_it_from_another_folder(tmp_path, monkeypatch):
+    plain_map = (models_folder() / "care_center.ward.yaml").read_text(encoding="utf-8")
+    (tmp_path / "mine.ward.yaml").write_text(plain_map, encoding="utf-8")
+    (tmp_path / "mine.scenario.yaml").write_text("ward: mine.ward.yaml")
+    monkeypatch.chdir(tmp_path)
+    assert mut.LoadScenario("mine.scenario.yaml").ward == str(tmp_path / "mine.ward.yaml")
