@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mala_drake.errors import BadInput
 from mala_drake.experiments.experiment import CUSTOM, Changes, Experiment, known_profiles
-from mala_drake.scenario import LoadScenario, Scenario
+from mala_drake.scenario import LoadScenario, Scenario, Validate, reset_unused
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +83,7 @@ def chosen_experiment(kind: ExperimentKind, options: ExperimentOptions, *, begun
     _check(kind, options)
     size = kind.full_size if options.full and kind.full_size else kind.size
     base = _base(options, size, begun)
+    _check_base(base)
     usual_profiles = (CUSTOM,) if base.patient.true_weights else size.profiles
     if options.conditions is None and begun is not None:
         conditions = begun.conditions
@@ -95,10 +96,7 @@ def chosen_experiment(kind: ExperimentKind, options: ExperimentOptions, *, begun
         profiles=options.profiles or (begun.profiles if begun else usual_profiles),
         seeds=options.seeds or (begun.seeds if begun else size.seeds),
     )
-    try:
-        experiment.validate()
-    except BadInput as error:
-        raise BadInput(_OPTION_OF.get(error.where, error.where), error.what, error.expected) from None
+    experiment.validate()
     return experiment
 
 
@@ -122,6 +120,16 @@ def _check(kind: ExperimentKind, options: ExperimentOptions) -> None:
     for seed in options.seeds or ():
         if seed < 0:
             raise BadInput("--seeds", str(seed), "whole numbers >= 0")
+
+
+def _check_base(base: Scenario) -> None:
+    """What options have made of the base scenario, a mistake told by the option's name; conditions come later."""
+    checked = copy.deepcopy(base)
+    reset_unused(checked)  # What the file sets of the solver that an option has replaced.
+    try:
+        Validate(checked, where="")
+    except BadInput as error:
+        raise BadInput(_OPTION_OF.get(error.where, error.where), error.what, error.expected) from None
 
 
 def _base(options: ExperimentOptions, size: Size, begun: Experiment | None) -> Scenario:

@@ -8,6 +8,7 @@ from mala_drake.errors import BadInput
 from mala_drake.experiments import experiment_kind as mut
 from mala_drake.experiments.ablations import ABLATION_KIND
 from mala_drake.experiments.convergence import CONVERGENCE
+from mala_drake.experiments.targets import TARGETS
 from mala_drake.patient.profiles import PROFILES
 from mala_drake.scenario import Scenario
 
@@ -102,9 +103,6 @@ def test_the_file_of_the_beginning_may_be_given_again(tmp_path):
         (ABLATION_KIND, {"conditions": ("posterior",)}, "--conditions: 'posterior'"),
         (CONVERGENCE, {"seeds": (1, 1)}, "--seeds: the same twice"),
         (CONVERGENCE, {"seeds": (-1,)}, "--seeds: -1"),
-        (CONVERGENCE, {"episodes": 0}, "--episodes: 0"),
-        (CONVERGENCE, {"task": "dance"}, "--task: 'dance'"),
-        (CONVERGENCE, {"solver": "guess"}, "--solver: 'guess'"),
         (CONVERGENCE, {"full": True}, "--full"),
     ],
 )
@@ -131,3 +129,17 @@ def test_a_learner_that_does_not_fit_the_file_is_refused(tmp_path):
     (tmp_path / "base.yaml").write_text("learner: {name: fixed, initial_weights: [1, 0, 0, 0, 0]}")
     with pytest.raises(BadInput, match=r"learner\.initial_weights: given to posterior"):
         chosen(scenario=tmp_path / "base.yaml", conditions=("fixed", "posterior"))
+
+
+@pytest.mark.parametrize("kind", [CONVERGENCE, ABLATION_KIND, TARGETS], ids=lambda kind: kind.name)
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"episodes": 0}, "^--episodes: 0"),
+        ({"task": "dance"}, "^--task: 'dance'"),
+        ({"solver": "guess"}, "^--solver: 'guess'"),
+    ],
+)
+def test_an_option_that_no_scenario_can_have_is_told_by_its_name(kind, options, words):
+    with pytest.raises(BadInput, match=words):
+        chosen(kind, **options)
