@@ -45,7 +45,7 @@ def dynamics_picture(results: Results) -> Iterator[Picture]:
     _name_lines(all_axes[0], truth, nominal["yaw_coupling"])
     _draw_slip(all_axes[-1], truth, medians["lateral_damping"])
     figure.supxlabel("episodes", fontsize=7.5, color=MUTED)
-    yield Picture("dynamics", "The controller's model becomes the robot's", _caption(results, condition, truth), figure)
+    yield Picture("dynamics", "The controller's model, as it was learned", _caption(results, condition, truth), figure)
 
 
 def _draw(axes: Axes, runs: tuple[Run, ...], name: str, nominal: float) -> NDArray[np.float64]:

@@ -71,8 +71,8 @@ def _caption(surprised: bool) -> str:
         "Means over the actions of an episode, medians over runs, with the band between their quartiles for all "
         "actions together. |E^C|, by how much an action cost more or less than the planner predicted when it began, in "
         "thousandths of the plan's metric and on a logarithmic scale. Both costs are features by the weights that the "
-        "episode was planned with; the patient's own rating is in neither. They come closer as the "
-        "planner learns what actions cost, also where the controller learns nothing. "
+        "episode was planned with; the patient's own rating is in neither. What the "
+        "planner has learned of what actions cost, where it learns it, is in its prediction. "
     )
     if not surprised:
         return text + "E^ψ, how far the reached state is from the expected one, was 0 after every action."
