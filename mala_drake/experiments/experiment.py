@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,6 +23,8 @@ CUSTOM = "custom"
 """The patient with the scenario's own weights, beside the profiles of the paper."""
 
 Changes = Mapping[str, Any]
+
+_PLAIN_NAME = re.compile(r"\w[\w.-]*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +122,7 @@ class Experiment:
             BadInput: if `data` is not of that form.
         """
         try:
-            return Experiment(
+            experiment = Experiment(
                 name=str(data["experiment"]),
                 base=typed(Scenario, data["scenario"], where=where, defaults=Scenario()),
                 conditions=dict(data["conditions"]),
@@ -128,6 +131,10 @@ class Experiment:
             )
         except (KeyError, TypeError, ValueError):
             raise BadInput(where, "does not describe an experiment", "the file that the experiment has made") from None
+        for name in (*experiment.conditions, *experiment.profiles):
+            if name and not _PLAIN_NAME.fullmatch(name):  # Runs are removed by their names.
+                raise BadInput(where, f"has {name!r} as a name", "names of conditions and profiles")
+        return experiment
 
 
 def known_profiles() -> tuple[str, ...]:

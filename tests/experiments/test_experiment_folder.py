@@ -194,3 +194,16 @@ def test_what_was_begun_with_another_ward_map_of_ones_own_is_not_gone_on_with(tm
     ward.unlink()
     with pytest.raises(BadInput, match=r"own\.ward\.yaml: cannot be read"):
         begin(folder, experiment, resume=True)
+
+
+@pytest.mark.parametrize("changes", [{"profiles": ["../valuable"]}, {"conditions": {"": {}, "..": {}}}])
+@pytest.mark.parametrize("options", [{"overwrite": True}, {"resume": True}])
+def test_no_file_makes_it_touch_what_is_outside(tmp_path, changes, options):
+    folder, valuable = tmp_path / "results", tmp_path / "valuable" / "seed_0" / "kept"
+    valuable.mkdir(parents=True)
+    begin(folder)
+    path = folder / "experiment.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), **changes}))
+    with pytest.raises(BadInput, match=r"\.\..* as a name"):
+        begin(folder, **options)
+    assert valuable.exists()
