@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydrake.solvers import IpoptSolver, MathematicalProgramResult
+from pydrake.solvers import IpoptSolver
 
 from .mathematical_program_solver import MathematicalProgramSolver
 
-_ITERATION_LIMIT_CODE = -1  # Ipopt's Maximum_Iterations_Exceeded.
 _TIGHTER = 0.01  # Complementarity within tol leaves bounds that should be active a root of it away.
 
 
@@ -33,6 +32,3 @@ class IpoptShootingSolver(MathematicalProgramSolver):
             "mu_strategy": "adaptive",
             "print_level": 0,
         }
-
-    def _hit_iteration_limit(self, result: MathematicalProgramResult) -> bool:
-        return result.get_solver_details().status == _ITERATION_LIMIT_CODE

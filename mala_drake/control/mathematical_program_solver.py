@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydrake.solvers import MathematicalProgramResult, SolverInterface, SolverOptions
+from pydrake.solvers import MathematicalProgramResult, SolutionResult, SolverInterface, SolverOptions
 
 from mala_drake.errors import BadInput
 
@@ -159,7 +159,8 @@ class MathematicalProgramSolver(ABC):
         """
         if result.is_success():
             return Status.SOLVED
-        stopped = Status.ITERATION_LIMIT if self._hit_iteration_limit(result) else Status.NUMERICAL
+        at_limit = result.get_solution_result() == SolutionResult.kIterationLimit
+        stopped = Status.ITERATION_LIMIT if at_limit else Status.NUMERICAL
         return stopped if self._hard_clearance else status_of(optimality, self._tolerance, stopped)
 
     @abstractmethod
@@ -169,7 +170,3 @@ class MathematicalProgramSolver(ABC):
     @abstractmethod
     def _make_options(self, tolerance: float, iteration_limit: int) -> dict[str, Any]:
         """Its options by name."""
-
-    @abstractmethod
-    def _hit_iteration_limit(self, result: MathematicalProgramResult) -> bool:
-        """Whether the solver stopped for its iteration limit."""

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydrake.solvers import MathematicalProgramResult, SnoptSolver
+from pydrake.solvers import SnoptSolver
 
 from .mathematical_program_solver import MathematicalProgramSolver
-
-_ITERATION_LIMIT_CODES = (31, 32)  # Minor and major iteration limits, SNOPT user's guide, Sec. 8.6.
 
 
 class SnoptShootingSolver(MathematicalProgramSolver):
@@ -28,6 +26,3 @@ class SnoptShootingSolver(MathematicalProgramSolver):
             "Function precision": 1e-13,
             "Linesearch tolerance": 0.9,
         }
-
-    def _hit_iteration_limit(self, result: MathematicalProgramResult) -> bool:
-        return result.get_solver_details().info in _ITERATION_LIMIT_CODES
