@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -94,25 +93,6 @@ class CostTranslation:
 
 
 DEFAULT_TRANSLATION = CostTranslation()
-
-
-def translate(weights: Sequence[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Q's and R's diagonals for `weights` in the order of `FEATURES`, by the default gains.
-
-    Shapes (6,) and (3,), not writeable.
-
-    Raises:
-        BadInput: the weights are not five non-negative numbers that sum to one.
-    """
-    return _translated(tuple(weights))
-
-
-@lru_cache(maxsize=1)  # The controller asks for the same weights at every tick of an episode.
-def _translated(weights: tuple[float, ...]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    diagonals = DEFAULT_TRANSLATION(weights)
-    for diagonal in diagonals:
-        diagonal.setflags(write=False)
-    return diagonals
 
 
 def learned_translation(learned: LearnedWeights) -> CostTranslation:

@@ -16,22 +16,22 @@ simplex = arrays(float, 5, elements=st.floats(0.001, 1.0)).map(lambda v: v / v.s
 
 
 def test_uniform_weights_give_the_working_point():
-    state_weights, control_weights = mut.translate(UNIFORM)
+    state_weights, control_weights = mut.DEFAULT_TRANSLATION(UNIFORM)
     np.testing.assert_allclose(state_weights, [34.0, 34.0, 3.0, 10.4, 10.4, 10.4])
     np.testing.assert_allclose(control_weights, [3.05, 3.05, 2.35])
 
 
 @given(first=simplex, second=simplex, share=st.floats(0, 1))
 def test_costs_are_affine_in_the_weights(first, second, share):
-    mixed = np.concatenate(mut.translate(share * first + (1 - share) * second))
-    ends = [np.concatenate(mut.translate(w)) for w in (first, second)]
+    mixed = np.concatenate(mut.DEFAULT_TRANSLATION(share * first + (1 - share) * second))
+    ends = [np.concatenate(mut.DEFAULT_TRANSLATION(w)) for w in (first, second)]
     np.testing.assert_allclose(mixed, share * ends[0] + (1 - share) * ends[1], rtol=1e-10)
 
 
 @given(weights=simplex)
 def test_costs_stay_positive_and_bounded_on_the_whole_simplex(weights):
-    working_point = np.concatenate(mut.translate(UNIFORM))
-    ratio = np.concatenate(mut.translate(weights)) / working_point
+    working_point = np.concatenate(mut.DEFAULT_TRANSLATION(UNIFORM))
+    ratio = np.concatenate(mut.DEFAULT_TRANSLATION(weights)) / working_point
     assert (ratio > mut.CostTranslation.LOWEST).all()
     assert (ratio < mut.CostTranslation.HIGHEST).all()
 
@@ -48,7 +48,7 @@ def test_each_preference_raises_the_entries_that_serve_it_and_no_other(feature, 
 
 
 def test_two_profiles_get_different_costs():
-    fast, safe = (np.concatenate(mut.translate(w)) for w in (SPEED_ORIENTED, SAFETY_FIRST))
+    fast, safe = (np.concatenate(mut.DEFAULT_TRANSLATION(w)) for w in (SPEED_ORIENTED, SAFETY_FIRST))
     assert fast[0] > 1.3 * safe[0]
     assert safe[3] > 1.3 * fast[3]
 
@@ -74,7 +74,7 @@ def test_the_derivative_by_the_gains_is_a_difference(weights, gains):
 @given(gains=arrays(float, (9, 5), elements=st.floats(-1e6, 1e6)), weights=simplex)
 def test_learned_gains_of_any_size_cannot_leave_the_bounds(gains, weights):
     translation = mut.CostTranslation(tuple(map(tuple, gains[:6])), tuple(map(tuple, gains[6:])))
-    ratio = np.concatenate(translation(weights)) / np.concatenate(mut.translate(UNIFORM))
+    ratio = np.concatenate(translation(weights)) / np.concatenate(mut.DEFAULT_TRANSLATION(UNIFORM))
     assert (ratio >= 0.1 - 1e-12).all()
     assert (ratio <= 4.0 + 1e-12).all()
 
@@ -84,7 +84,7 @@ def test_learned_gains_of_any_size_cannot_leave_the_bounds(gains, weights):
 )
 def test_weights_off_the_simplex_are_refused(weights):
     with pytest.raises(BadInput, match="sum to one"):
-        mut.translate(weights)
+        mut.DEFAULT_TRANSLATION(weights)
 
 
 def test_gains_of_the_wrong_shape_are_refused():
