@@ -169,7 +169,7 @@ class LegGuide:
         return Track(path, target[2], reverse=behind and path.length < _CREEP_BACK)
 
     def _still_steps(self, leg: Leg, state: NDArray[np.float64]) -> int:
-        """Counts steps without movement, once the start of the leg is past."""
+        """Control steps in a row without movement, this one included; those at the start of a track count, too."""
         moving = abs(state[StateIndex.FORWARD_VELOCITY]) > _STILL or abs(state[StateIndex.YAW_RATE]) > _STILL
         return 0 if moving else leg.still + 1
 

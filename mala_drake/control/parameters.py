@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mala_drake.errors import BadInput
 from mala_drake.messages import LearnedDynamics, Message, Shape
+from mala_drake.ward.routes import BODY_RADIUS
 
 from .model import CONTROL_SIZE, STATE_SIZE
 
@@ -134,7 +135,7 @@ class ConstraintParameters(_Arrays):
     speed_limits: Vector  # Shape (N,), largest forward velocity at stage k = 1 ... N, m/s.
     obstacles: tuple[Shape, ...] = ()  # Any number; the problem takes those nearest to its references.
     clearance: float = 0.1  # Distance kept between the robot's body and any obstacle, metres.
-    robot_radius: float = 0.28  # Metres.
+    robot_radius: float = BODY_RADIUS  # Metres.
     reverse_limit: float = 0.5  # Largest backward speed, m/s.
     yaw_rate_limit: float = 2.0  # rad/s.
     lateral_limit: float = 2.0  # Largest |v_x omega|, m/s^2.

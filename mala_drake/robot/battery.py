@@ -9,9 +9,7 @@ from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 from mala_drake.clock import PLANT_STEP
 from mala_drake.errors import BadInput
 from mala_drake.robot.drive_law import DriveLaw
-
-CRUISE_SPEED = 1.5
-"""m/s; the speed at which the capacity is defined."""
+from mala_drake.ward.congestion import CRUISE_SPEED
 
 CHARGE_PER_METRE = 0.01
 """Charge that driving one metre at cruise speed costs."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mala_drake.ward.routes import BODY_RADIUS
+
 
 @dataclass(frozen=True, slots=True)
 class RobotParameters:
@@ -20,7 +22,7 @@ class RobotParameters:
     wheel_inertia: float = 0.006  # kg m^2, of one wheel about its axle.
     wheel_damping: float = 0.0667  # N m s/rad, of one wheel: a rolling resistance of 20 N at 1.5 m/s.
     torque_limit: float = 8.0  # N m, of one wheel.
-    body_radius: float = 0.28  # m, of the hull seen from above.
+    body_radius: float = BODY_RADIUS  # m, of the hull seen from above.
     propulsion_limit: float = 2.0  # m/s^2, forward and backward.
     brake_limit: float = 2.0  # m/s^2.
     yaw_acceleration_limit: float = 1.0  # rad/s^2.

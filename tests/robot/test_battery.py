@@ -10,6 +10,7 @@ from pydrake.systems.analysis import Simulator
 from mala_drake.errors import BadInput
 from mala_drake.robot import battery as mut
 from mala_drake.robot.drive_law import DriveLaw
+from mala_drake.ward.congestion import CRUISE_SPEED
 
 X, V_X = 0, 3
 
@@ -62,8 +63,8 @@ def test_refuses_a_capacity_that_is_none(capacity):
 
 
 def test_the_capacity_follows_from_the_power_at_cruise():
-    seconds_per_metre = 1.0 / mut.CRUISE_SPEED
-    assert DriveLaw().cruise_power(mut.CRUISE_SPEED) * seconds_per_metre / mut.CAPACITY == pytest.approx(0.01)
+    seconds_per_metre = 1.0 / CRUISE_SPEED
+    assert DriveLaw().cruise_power(CRUISE_SPEED) * seconds_per_metre / mut.CAPACITY == pytest.approx(0.01)
 
 
 @pytest.fixture

@@ -6,10 +6,11 @@ import casadi
 import numpy as np
 import pytest
 
-from mala_drake.robot.battery import CAPACITY, CHARGE_PER_METRE, CRUISE_SPEED
+from mala_drake.robot.battery import CAPACITY, CHARGE_PER_METRE
 from mala_drake.robot.drive_charge import charge_rate
 from mala_drake.robot.drive_law import DriveLaw
 from mala_drake.robot.robot_parameters import NOMINAL
+from mala_drake.ward.congestion import CRUISE_SPEED
 
 motion, command = (tuple(casadi.SX.sym(name, size)[i] for i in range(size)) for name, size in (("m", 2), ("c", 3)))
 RATE = casadi.Function("rate", [*motion, *command], [charge_rate(motion, command)])
