@@ -54,7 +54,7 @@ class _Driving(Message):
     control: tuple[float, ...] = PARKED
     warm_start: NDArray[np.float64] | None = None
     report: ActionReport = ActionReport()
-    predicted: PredictedTrajectory = PredictedTrajectory()
+    predicted: PredictedTrajectory = PredictedTrajectory()  # Empty while the robot is parked.
     terminal: TerminalParameters | None = None  # Of the newest solve.
     bad_solves: int = 0  # In a row.
     bad_states: int = 0  # In a row.
@@ -249,7 +249,7 @@ class MpcController(LeafSystem):
     def _after_failed_solve(self, driving: _Driving, robot_state: NDArray[np.float64], solution: Solution) -> _Driving:
         """Brakes, and tries again from a cold start at the next tick; reports when that keeps failing."""
         bad_solves = driving.bad_solves + 1
-        driving = replace(driving, bad_solves=bad_solves, warm_start=None, control=PARKED)
+        driving = _parked(replace(driving, bad_solves=bad_solves))
         if bad_solves > self._guide.rules.tolerated_failures:
             detail = f"{bad_solves} solves in a row ended as {solution.status.value}"
             return self._finish(driving, robot_state, Outcome.SOLVER_FAILURE, detail)
@@ -258,7 +258,7 @@ class MpcController(LeafSystem):
     def _without_state(self, driving: _Driving) -> _Driving:
         """Brakes while the state estimate is not finite; reports when it stays so."""
         bad_states = driving.bad_states + 1
-        driving = replace(driving, bad_states=bad_states, control=PARKED, warm_start=None)
+        driving = _parked(replace(driving, bad_states=bad_states))
         if bad_states <= self._guide.rules.tolerated_failures:
             return driving
         report = replace(
@@ -268,7 +268,7 @@ class MpcController(LeafSystem):
 
     def _finish(self, driving: _Driving, robot_state: NDArray[np.float64], outcome: Outcome, detail: str) -> _Driving:
         target = driving.leg.target if driving.leg else self._targets.get(driving.action.place)
-        position_error, yaw_error = pose_errors(robot_state, target) if target else (0.0, 0.0)
+        position_error, yaw_error = pose_errors(robot_state, target) if target else (None, None)
         end_cost = terminal_cost(robot_state, target, driving.terminal) if target and driving.terminal else 0.0
         report = replace(
             driving.report,
@@ -280,4 +280,9 @@ class MpcController(LeafSystem):
             closed_loop_cost=driving.report.closed_loop_cost + end_cost,
             detail=detail,
         )
-        return replace(driving, report=report, control=PARKED, warm_start=None, predicted=PredictedTrajectory())
+        return _parked(replace(driving, report=report))
+
+
+def _parked(driving: _Driving) -> _Driving:
+    """The robot stands; nothing is predicted, and the next solve starts cold."""
+    return replace(driving, control=PARKED, warm_start=None, predicted=PredictedTrajectory())

@@ -18,7 +18,7 @@ from mala_drake.preferences import CRITERIA
 
 _BY_CRITERION = form.entry(dict.fromkeys(CRITERIA, form.measured))
 _WEIGHTS = form.list_of(form.measured, len(CRITERIA))
-_MEASURED_LIST = form.list_of(form.measured)
+_OF_LEGS = form.list_of(form.or_null(form.number))
 _VELOCITIES = 3  # Of the errors a tick ahead: v_x, v_y and the yaw rate.
 _GAIN_ROWS, _GAIN_COLUMNS = DEFAULT_TRANSLATION.gains.shape
 
@@ -75,9 +75,9 @@ _FIELDS: Mapping[str, form.Form] = MappingProxyType(
         "mpc_failures": form.whole,
         "min_clearance_m": form.measured,
         "collisions": form.whole,
-        "terminal_errors_m": _MEASURED_LIST,
-        "terminal_yaw_errors_rad": _MEASURED_LIST,
-        "terminal_speeds_m_s": _MEASURED_LIST,
+        "terminal_errors_m": _OF_LEGS,
+        "terminal_yaw_errors_rad": _OF_LEGS,
+        "terminal_speeds_m_s": _OF_LEGS,
         "mismatches": form.whole,
         "battery_start": form.measured,
         "battery_end": form.measured,

@@ -46,7 +46,7 @@ class EpisodeRecord:
     `executed_actions` has an entry an action that has ended, in order: `action`, `outcome`, `external_reward`,
     `closed_loop_cost`, `state_mismatch` and `cost_mismatch`, which `ActionMeter` defines; it is None in what earlier
     versions have written. Clearance and collisions are taken at the plant step; `terminal_errors_m` and the like have
-    one entry a leg. Only `timing` depends on the machine.
+    one entry a leg, null where nothing was measured. Only `timing` depends on the machine.
     """
 
     episode: int
@@ -72,9 +72,9 @@ class EpisodeRecord:
     mpc_failures: int
     min_clearance_m: float
     collisions: int
-    terminal_errors_m: list[float]
-    terminal_yaw_errors_rad: list[float]
-    terminal_speeds_m_s: list[float]
+    terminal_errors_m: list[float | None]
+    terminal_yaw_errors_rad: list[float | None]
+    terminal_speeds_m_s: list[float | None]
     leg_outcomes: list[str]
     mismatches: int
     battery_start: float

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -52,14 +52,19 @@ def totals_of(records: Sequence[EpisodeRecord]) -> dict[str, Any]:
         "failures": [record.failure for record in records if record.failure],
         "collisions": sum(record.collisions for record in records),
         "min_clearance_m": min((record.min_clearance_m for record in records), default=None),
-        "max_terminal_error_m": max((e for r in records for e in r.terminal_errors_m), default=None),
-        "max_terminal_yaw_error_rad": max((e for r in records for e in r.terminal_yaw_errors_rad), default=None),
-        "max_terminal_speed_m_s": max((e for r in records for e in r.terminal_speeds_m_s), default=None),
+        "max_terminal_error_m": _worst(record.terminal_errors_m for record in records),
+        "max_terminal_yaw_error_rad": _worst(record.terminal_yaw_errors_rad for record in records),
+        "max_terminal_speed_m_s": _worst(record.terminal_speeds_m_s for record in records),
         "mpc_solves": sum(record.mpc_solves for record in records),
         "mpc_failures": sum(record.mpc_failures for record in records),
         "mpc_not_converged": sum(record.mpc_not_converged or 0 for record in records),
         "simulated_s": sum(record.sim_time_s for record in records),
     }
+
+
+def _worst(of_episodes: Iterable[Sequence[float | None]]) -> float | None:
+    """The greatest of the figures that were measured, None of none."""
+    return max((value for values in of_episodes for value in values if value is not None), default=None)
 
 
 def timing_of(records: Sequence[EpisodeRecord]) -> dict[str, Any]:

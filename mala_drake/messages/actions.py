@@ -95,15 +95,16 @@ class PlanMessage(Message):
 class ActionReport(Message):
     """What became of the action `sequence`.
 
-    The terminal errors are those of a leg: metres, radians, metres per second (and radians per second).
+    The terminal errors are those of a leg that has ended, in metres, radians and metres per second. One is None where
+    nothing was measured: of a place that nobody knows, or of a state that was not finite.
     """
 
     sequence: int = 0
     outcome: Outcome = Outcome.RUNNING
     steps: int = 0
-    position_error: float = 0.0
-    yaw_error: float = 0.0
-    terminal_speed: float = 0.0
+    position_error: float | None = None
+    yaw_error: float | None = None
+    terminal_speed: float | None = None
     closed_loop_cost: float = 0.0  # R^o = sum of G over the steps so far, and W of the reached state once it has ended.
     solves: int = 0
     failures: int = 0  # Solves that the robot was not driven with: it braked instead.

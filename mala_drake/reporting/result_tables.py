@@ -223,8 +223,8 @@ def _stopped_early(records: Iterable[EpisodeRecord]) -> str:
     return str(sum(told)) if told else NONE
 
 
-def _worst(values: Iterable[Sequence[float]]) -> float:
-    return quantile((abs(value) for of_episode in values for value in of_episode), 1.0)
+def _worst(values: Iterable[Sequence[float | None]]) -> float:
+    return quantile((abs(value) for of_episode in values for value in of_episode if value is not None), 1.0)
 
 
 def timing_table(results: Results) -> Table | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mala_drake.control import mpc_controller as mut
@@ -34,6 +36,7 @@ def test_a_failed_solve_brakes_and_the_next_one_goes_on(problem):
     assert tuple(bench.output("control")) == mut.PARKED
     report = bench.output("leg_report")
     assert (report.failures, report.not_converged) == (1, 0)
+    assert bench.output("predicted_trajectory").states == ()
     bench.tick()
     assert bench.output("control")[0] > 0.1
     assert bench.output("leg_report").outcome is Outcome.RUNNING
@@ -57,9 +60,21 @@ def test_a_state_that_is_not_finite_brakes_and_is_reported_when_it_stays(bench):
     bench.place([np.nan] * 6)
     bench.tick()
     assert tuple(bench.output("control")) == mut.PARKED
+    assert bench.output("predicted_trajectory").states == ()
     assert bench.output("leg_report").outcome is Outcome.RUNNING
     bench.tick(5)
-    assert bench.output("leg_report").outcome is Outcome.INVALID_STATE
+    report = bench.output("leg_report")
+    assert report.outcome is Outcome.INVALID_STATE
+    assert (report.position_error, report.yaw_error, report.terminal_speed) == (None, None, None)
+
+
+def test_a_place_that_nobody_knows_has_no_pose_to_be_off(bench):
+    bench.place([0.0, 0.0, 0.0, 0.4, 0.0, 0.0])
+    bench.send(replace(GO, place="nowhere"))
+    bench.tick()
+    report = bench.output("leg_report")
+    assert report.outcome is Outcome.BLOCKED
+    assert (report.position_error, report.yaw_error, report.terminal_speed) == (None, None, 0.4)
 
 
 def test_one_lost_state_estimate_is_forgiven(bench):

@@ -23,6 +23,7 @@ def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode
     written.append(episode_record(episode=4, **learned))
     entry = {"action": "(recharge robot1)", "closed_loop_cost": None, "cost_mismatch": 0.01}
     written.append(episode_record(episode=5, executed_actions=[entry]))
+    written.append(episode_record(episode=6, terminal_errors_m=[0.01, None]))
     (tmp_path / "file").write_text("".join(record.to_json() + "\n" for record in written))
     records, torn = mut.read_episodes(tmp_path / "file")
     assert not torn
@@ -32,6 +33,7 @@ def test_records_come_back_with_everything_that_is_in_the_file(tmp_path, episode
     assert records[2].executed_actions is None
     assert (records[3].learned_weights, records[3].learned_translation) == tuple(learned.values())
     assert records[4].executed_actions == [entry]
+    assert records[5].terminal_errors_m == [0.01, None]
 
 
 def test_a_line_of_an_earlier_version_does_not_tell_solves_that_stopped_early(tmp_path, episode_record):

@@ -214,6 +214,15 @@ def test_solves_that_stopped_early_are_added_up_where_they_are_told():
     assert (totals["mpc_failures"], totals["mpc_not_converged"]) == (3, 12)
 
 
+def test_a_leg_whose_end_was_not_measured_is_not_the_worst_one():
+    one, other = episode(0.3), episode(0.3)
+    one.terminal_errors_m, one.terminal_yaw_errors_rad = [None, 0.02], [None]
+    other.terminal_errors_m, other.terminal_speeds_m_s = [0.05, None], [0.01]
+    totals = mut.summarise(Scenario(), [one, other])["totals"]
+    worst = [totals[f"max_terminal_{name}"] for name in ("error_m", "yaw_error_rad", "speed_m_s")]
+    assert worst == [0.05, None, 0.01]
+
+
 def test_a_summary_is_json_even_where_nothing_was_near():
     summary = mut.summarise(Scenario(), [episode(0.3, clearance=float("inf"))])
     assert summary["totals"]["min_clearance_m"] is None

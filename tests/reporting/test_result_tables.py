@@ -134,7 +134,7 @@ def test_the_worst_of_all_episodes_is_told(tmp_path, simulate_results):
             return replace(
                 record,
                 min_clearance_m=0.1,
-                terminal_errors_m=[0.01, 0.3],
+                terminal_errors_m=[0.01, None, 0.3],
                 terminal_yaw_errors_rad=[-0.2],
                 terminal_speeds_m_s=[],
                 mpc_failures=2,
