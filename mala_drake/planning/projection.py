@@ -41,9 +41,26 @@ class FactGraph:
         self.is_too_large = False
 
     def explore(self, mask: int, budget: Budget) -> bool:
-        """Adds what `mask` can reach; False if that is more than a heuristic should cost."""
-        if mask in self.nodes or self.is_too_large:
-            return not self.is_too_large
+        """Adds what `mask` can reach; False if that is more than a heuristic should cost.
+
+        Raises:
+            OutOfBudget: if the time is up; the graph is then as it was before.
+        """
+        if mask not in self.nodes and not self.is_too_large:
+            # In a copy: half a graph would pass for a whole one when it is next asked for.
+            grown = self._copy()
+            grown._grow(mask, budget)
+            self.nodes, self.incoming, self.steps, self.goals = grown.nodes, grown.incoming, grown.steps, grown.goals
+            self.is_too_large = grown.is_too_large
+        return not self.is_too_large
+
+    def _copy(self) -> FactGraph:
+        copy = FactGraph(self._task)
+        copy.nodes, copy.steps, copy.goals = dict(self.nodes), dict(self.steps), list(self.goals)
+        copy.incoming = [list(each) for each in self.incoming]
+        return copy
+
+    def _grow(self, mask: int, budget: Budget) -> None:
         queue = [self._add(mask)]
         masks = list(self.nodes)
         for node in queue:
@@ -58,8 +75,7 @@ class FactGraph:
                 self.incoming[self.nodes[successor]].append((node, number))
             if len(self.nodes) > _MOST_NODES or self.is_too_large:
                 self.is_too_large = True
-                return False
-        return True
+                return
 
     def _add(self, mask: int) -> int:
         node = self.nodes.setdefault(mask, len(self.nodes))
