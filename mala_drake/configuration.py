@@ -16,6 +16,50 @@ from mala_drake.errors import BadInput
 
 T = TypeVar("T")
 
+_LONGEST = 60  # Characters shown of a value that cannot be read.
+
+
+def read_yaml(path: Path) -> Any:
+    """What a YAML file holds: nested mappings, lists and plain values; None if it is empty.
+
+    Raises:
+        BadInput: the file cannot be read, is not YAML, or has a date or a whole number that is out of all bounds.
+    """
+    return _parsed(_text(path), path.name)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not text in UTF-8"
+        raise BadInput(str(path), f"cannot be read: {reason}", "a YAML file") from None
+
+
+def _parsed(text: str, where: str) -> Any:
+    try:
+        return yaml.load(text, _Loader)
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f"{where}:{mark.line + 1}:{mark.column + 1}" if mark else where
+        raise BadInput(place, f"not YAML: {getattr(error, 'problem', None) or error}") from None
+
+
+class _Loader(yaml.SafeLoader):
+    """Tells the place of a date that does not exist, and of a whole number that is larger than any float."""
+
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        try:
+            value = super().construct_object(node, deep=deep)
+            if isinstance(value, int):
+                float(value)
+        except (ValueError, OverflowError):
+            kind, text = node.tag.rsplit(":", 1)[-1], str(node.value)
+            shown = text if len(text) <= _LONGEST else text[:_LONGEST] + " ..."
+            problem = f"{shown!r} is no {kind} that can be read"
+            raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark) from None
+        return value
+
 
 def load_typed(schema: type[T], path: str | Path, *, defaults: T) -> T:
     """Reads a YAML file into `schema`; keys that are missing keep their values in `defaults`.
@@ -24,17 +68,8 @@ def load_typed(schema: type[T], path: str | Path, *, defaults: T) -> T:
         BadInput: the file cannot be read, is not YAML, or does not fit the schema.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not text in UTF-8"
-        raise BadInput(str(path), f"cannot be read: {reason}", "a YAML file") from None
-    try:
-        data = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        place = f"{path.name}:{mark.line + 1}:{mark.column + 1}" if mark else path.name
-        raise BadInput(place, f"not YAML: {getattr(error, 'problem', None) or error}") from None
+    text = _text(path)
+    data = _parsed(text, path.name)
     if data is None:
         return defaults
     return _typed(schema, data, text, where=path.name, defaults=defaults)
@@ -61,7 +96,7 @@ def _typed(schema: type[T], data: Any, text: str, *, where: str, defaults: T) ->
     _check_fields(schema, data, where)
     try:
         return yaml_load_typed(schema=schema, data=text, defaults=defaults)
-    except (RuntimeError, TypeError, ValueError, AttributeError) as error:
+    except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise BadInput(where, re.sub(r"\s+", " ", str(error)).strip()) from None
 
 

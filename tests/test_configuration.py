@@ -59,6 +59,11 @@ def test_lists_are_read(tmp_path):
         ("front: {driven: 1}\n", ["driven", "1", "true or false"]),
         ("- a\n- b\n", ["vehicle.yaml", "list", "mapping"]),
         ("mass: [3\n", ["vehicle.yaml", "not YAML"]),
+        ("name: x\nmass: 2024-13-45\n", ["vehicle.yaml:2:7", "'2024-13-45' is no timestamp that can be read"]),
+        (f"wheels: {'9' * 5000}\n", ["vehicle.yaml:1:9", "'99999", "is no int that can be read"]),
+        (f"mass: 1{'0' * 400}\n", ["vehicle.yaml:1:7", "'10000", "is no int that can be read"]),
+        (f"name: 0x{'f' * 5000}\n", ["vehicle.yaml:1:7", "'0xfff", "is no int that can be read"]),
+        ("tags: [a, 0x_]\n", ["vehicle.yaml:1:11", "'0x_' is no int"]),
         (b"\xff\xfe\x00", ["vehicle.yaml", "cannot be read"]),
     ],
 )
@@ -67,8 +72,14 @@ def test_a_mistake_is_told_in_one_line(tmp_path, text, words):
         load(tmp_path, text)
     line = str(caught.value)
     assert "\n" not in line
+    assert len(line) < 300
     for word in words:
         assert word in line
+
+
+def test_a_number_that_no_float_can_hold_is_refused_in_a_mapping_too():
+    with pytest.raises(BadInput, match="here: int too large"):
+        mut.typed(Vehicle, {"mass": 10**400}, where="here", defaults=Vehicle())
 
 
 def test_a_missing_file_is_named(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from mala_drake.configuration import load_typed
@@ -23,7 +24,8 @@ def LoadScenario(path: str | Path | None = None, *, defaults: Scenario | None = 
     file = Path(path) if path is not None else models_folder() / "default.scenario.yaml"
     scenario = load_typed(Scenario, file, defaults=Scenario() if defaults is None else defaults)
     if scenario.ward:
-        # Whole, for whoever reads the results from another folder.
-        scenario.ward = str((file.parent / scenario.ward).resolve())
+        # Whole, for whoever reads the results from another folder. What can be no path stays for `Validate` to refuse.
+        with suppress(ValueError):
+            scenario.ward = str((file.parent / scenario.ward).resolve())
     Validate(scenario, where=file.name)
     return scenario

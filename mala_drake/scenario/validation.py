@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -128,9 +129,18 @@ def _check_ranges(scenario: Scenario, at: str) -> None:
         ("control.tolerated_failures", control.tolerated_failures, 0, 1_000),
     )
     for name, value, low, high in ranges:
-        if not low <= value <= high:
-            limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:.10g}"
-            raise BadInput(at + name, f"{value:.10g}", limits)
+        _in_range(at + name, value, low, high)
+
+
+def _in_range(at: str, value: float, low: float, high: float) -> None:
+    if low <= value <= high:
+        return
+    try:
+        told = f"{value:.10g}"
+    except OverflowError:
+        told = "a number of hundreds of digits"
+    limits = f"a number >= {low:g}" if math.isinf(high) else f"a number from {low:g} to {high:.10g}"
+    raise BadInput(at, told, limits)
 
 
 def _check_control_learners(scenario: Scenario, at: str) -> None:
@@ -150,7 +160,8 @@ def _check_control_learners(scenario: Scenario, at: str) -> None:
 
 def _checked_ward(scenario: Scenario, at: str) -> Ward:
     """The ward, once it is known that there is a home and that the robot fits wherever it is to stand."""
-    if scenario.ward and not Path(scenario.ward).is_file():
+    # Not `Path.is_file`, which raises where a path is too long or has a null character.
+    if scenario.ward and not os.path.isfile(scenario.ward):
         raise BadInput(at + "ward", repr(scenario.ward), "the path of a ward map, or nothing")
     ward = scenario.load_ward()
     where = Path(scenario.ward).name or "ward"
@@ -172,6 +183,7 @@ def _checked_ward(scenario: Scenario, at: str) -> Ward:
 
 
 def _check_obstacles(scenario: Scenario, ward: Ward, at: str) -> None:
+    reach = ward.half_extent
     home = next(place for place in ward.places if place.category == "home")
     names = [obstacle.name for obstacle in scenario.world.obstacles]
     for i, (config, shape) in enumerate(zip(scenario.world.obstacles, scenario.unmapped_shapes, strict=True)):
@@ -180,6 +192,8 @@ def _check_obstacles(scenario: Scenario, ward: Ward, at: str) -> None:
             raise BadInput(f"{where}.name", repr(config.name), "a name that no other obstacle has")
         if min(config.half_length, config.half_width, config.height) <= 0:
             raise BadInput(where, "a size that is not positive", "half_length, half_width and height above 0")
+        for name in ("x", "y", "half_length", "half_width", "height"):
+            _in_range(f"{where}.{name}", getattr(config, name), -reach if name in ("x", "y") else 0.0, reach)
         if ShapeDistances([shape])([home.x, home.y])[0] < BODY_RADIUS:
             raise BadInput(where, f"stands on the robot at {home.name}", "an obstacle that leaves the robot free")
 

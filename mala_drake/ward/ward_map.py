@@ -9,8 +9,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import yaml
+import shapely
 
+from mala_drake.configuration import read_yaml
 from mala_drake.errors import BadInput
 from mala_drake.messages import Shape
 from mala_drake.resources import models_folder
@@ -143,6 +144,8 @@ def _read_zone(data: Any, where: str) -> Zone:
         raise BadInput(f"{where}.polygon", f"{zone.polygon!r}", "a list of [x, y] corners") from None
     if len(polygon) < 3 or not all(math.isfinite(value) for corner in polygon for value in corner):
         raise BadInput(f"{where}.polygon", f"{len(polygon)} corners", "at least 3 finite corners")
+    if not (area := shapely.Polygon(polygon)).is_valid:
+        raise BadInput(f"{where}.polygon", shapely.is_valid_reason(area), "corners in order round an area")
     if not 0 < zone.level < 1:
         raise BadInput(f"{where}.level", f"{zone.level}", "a level in (0, 1)")
     return Zone(zone.name, zone.level, polygon)
@@ -159,12 +162,7 @@ def LoadWard(path: str | Path | None = None) -> Ward:
     """
     path = Path(path) if path is not None else models_folder() / "care_center.ward.yaml"
     where = path.name
-    try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadInput(str(path), f"cannot be read ({type(error).__name__})", "a readable ward map") from None
-    except yaml.YAMLError as error:
-        raise BadInput(str(path), f"is not YAML ({error})", "a ward map") from None
+    data = read_yaml(path)
     if not isinstance(data, dict):
         raise BadInput(where, "is not a mapping", "a ward map")
     data = dict(data)

@@ -113,6 +113,14 @@ def test_no_number_may_be_negative(prefix, name):
         ("world: {obstacles: [{x: .inf}]}", ["world.obstacles[0].x: inf", "finite"]),
         ("world: {obstacles: [{x: 0.3, y: 0.1}]}", ["world.obstacles[0]", "robot at home"]),
         ("world: {obstacles: [{x: 5, height: 0}]}", ["world.obstacles[0]", "above 0"]),
+        ("world: {obstacles: [{x: 5000}]}", ["world.obstacles[0].x: 5000", "from -25 to 25"]),
+        ("world: {obstacles: [{x: 5, y: -1e300}]}", ["world.obstacles[0].y: -1e+300", "from -25 to 25"]),
+        (
+            "world: {obstacles: [{x: 5, half_length: 1e300}]}",
+            ["obstacles[0].half_length: 1e+300", "from 0 to 25"],
+        ),
+        ("world: {obstacles: [{x: 5, half_width: 26}]}", ["world.obstacles[0].half_width: 26", "from 0 to 25"]),
+        ("world: {obstacles: [{x: 5, height: 26}]}", ["world.obstacles[0].height: 26", "from 0 to 25"]),
         ("world: {obstacles: [{x: 5}, {x: 9}]}", ["world.obstacles[1].name: 'trolley'", "no other obstacle"]),
         ("world: {displaced_places: [{place: attic, dx: 2}]}", ["world.displaced_places[0].place: 'attic'", "pantry"]),
         ("world: {displaced_places: [{place: home, dx: 2}]}", ["world.displaced_places[0].place: 'home'"]),
@@ -142,6 +150,8 @@ def test_no_number_may_be_negative(prefix, name):
         ("control: {target_evidence: hearsay}", ["control.target_evidence: 'hearsay'", "fuzzy, geometric"]),
         ("control: {target_sensitivity: none}", ["control.target_sensitivity: 'none'", "simulated, identity"]),
         ("ward: nowhere.ward.yaml", ["ward", "nowhere.ward.yaml", "path of a ward map"]),
+        ('ward: "a\\0b"', ["ward: ", "path of a ward map"]),
+        (f"ward: {'a' * 5000}", ["ward: ", "path of a ward map"]),
         ("robto: {}", ["robto: unknown key", "robot"]),
     ],
 )
@@ -150,6 +160,11 @@ def test_a_mistake_in_the_file_is_named(refusal, text, words):
     assert line.startswith("mine.scenario.yaml: ")
     for word in words:
         assert word in line
+
+
+def test_a_number_of_hundreds_of_digits_is_refused_like_any_other():
+    with pytest.raises(BadInput, match="episodes: a number of hundreds of digits; expected a number from 1 to 1000000"):
+        mut.Validate(Scenario(episodes=10**400))
 
 
 def test_targets_may_be_learned_with_hard_clearance_where_no_leg_is_simulated(load_scenario):

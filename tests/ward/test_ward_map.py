@@ -129,6 +129,8 @@ def change(data, path, value):
         (("zones", 0, "level"), 1.0, "zones[0].level: 1.0; expected a level in (0, 1)"),
         (("zones", 0, "polygon"), [[0, 0], [1, 1]], "zones[0].polygon: 2 corners; expected at least 3"),
         (("zones", 0, "polygon"), [[0, 0], [1, 1], [0, float("inf")]], "expected at least 3 finite corners"),
+        (("zones", 0, "polygon"), [[0, 0], [2, 2], [2, 0], [0, 2]], "zones[0].polygon: Self-intersection[1 1]"),
+        (("zones", 0, "polygon"), [[0, 0], [1, 1], [2, 2]], "expected corners in order round an area"),
         (("zones", 0, "polygon"), "round", "zones[0].polygon: 'round'; expected a list of [x, y] corners"),
         (("zones", 0, "polygon"), 5, "zones[0].polygon: 5; expected a list of [x, y] corners"),
         (("background_congestion",), 0.0, "background_congestion: 0.0; expected a level in (0, 1)"),
@@ -146,7 +148,7 @@ def test_what_is_wrong_is_told_in_one_line(data, load, path, value, told):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("text", ["", "- 1\n- 2\n", "just text", "a: [1, 2", "{unclosed", "a: *nobody"])
+@pytest.mark.parametrize("text", ["", "- 1\n- 2\n", "text", "a: [1, 2", "{unclosed", "a: *nobody", "name: 2024-13-45"])
 def test_a_file_that_is_no_map_is_refused_in_one_line(load, text):
     with pytest.raises(BadInput) as error:
         load(text)
