@@ -50,6 +50,7 @@ class _FreeSpace:
     def __init__(self, shapes: Sequence[Shape], margin: float) -> None:
         self._solid = shapely.union_all([outline(shape, margin=margin) for shape in shapes])
         shapely.prepare(self._solid)
+        self._bodies = np.array([outline(shape) for shape in shapes], dtype=object)
         grown = shapely.union_all([outline(shape, margin=margin + _NUDGE) for shape in shapes])
         corners = shapely.get_coordinates(grown)
         self._vertices = np.unique(corners[~shapely.contains_xy(self._solid, corners)], axis=0)
@@ -59,7 +60,7 @@ class _FreeSpace:
         return not shapely.contains_xy(self._solid, *point)
 
     def nearest_free(self, point: NDArray[np.float64]) -> NDArray[np.float64] | None:
-        """The free point nearest to `point`, or None when there is none close by."""
+        """The free point nearest to `point`, or None when there is none close by or it is behind something solid."""
         if self.free(point):
             return point
         way_out = shapely.shortest_line(shapely.Point(point), self._solid.boundary)
@@ -68,7 +69,12 @@ class _FreeSpace:
         if distance > _ESCAPE:
             return None
         escaped = point + step * (1 + 2 * _NUDGE / max(distance, 1e-9))
-        return escaped if self.free(escaped) else None
+        return escaped if self.free(escaped) and not self._crosses(point, escaped) else None
+
+    def _crosses(self, start: NDArray[np.float64], end: NDArray[np.float64]) -> bool:
+        """Whether something solid is on the way; what `start` is in, as by an estimate that is off, may be left."""
+        met = shapely.intersects(self._bodies, shapely.LineString([start, end]))
+        return bool((met & ~shapely.contains_xy(self._bodies, *start)).any())
 
     def _visible_distances(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
         """Lengths of the free segments between two sets of points; infinite where something is in the way."""

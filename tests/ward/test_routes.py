@@ -130,6 +130,19 @@ def test_a_start_too_close_to_a_wall_is_left_by_the_shortest_way(room):
     assert route.points[1] == pytest.approx([0.1 + WIDE, -1.0], abs=0.02)
 
 
+def test_a_start_between_a_thin_wall_and_something_is_not_left_through_the_wall():
+    wall = Shape("wall", 0.0, -1.0, half_length=0.05, half_width=3.0)
+    trolley = Shape("trolley", 1.17, -1.0, half_length=0.3, half_width=1.5)  # Leaves 0.82 m.
+    shapes = (*box_room()[:-1], wall)
+    route = mut.RoutePlanner(shapes).route((0.34, -1.0), (4.0, -1.0), unmapped=[trolley])
+    assert ShapeDistances([*shapes, trolley])(sample(route.points)[0]).min() >= mut.BODY_RADIUS
+
+
+def test_a_start_that_is_taken_to_be_inside_something_gets_out_of_it(room):
+    route = room.route((0.05, -1.0), (4.0, -1.0))
+    assert route.points[1] == pytest.approx([0.1 + WIDE, -1.0], abs=0.02)
+
+
 @pytest.mark.parametrize("depth", [0.0, 1e-9, 1e-6, 1e-3])
 def test_a_start_on_the_edge_of_the_free_space_gets_away(room, depth):
     edge = float(room.route((0.3, -1.0), (4.0, -1.0)).points[1][0]) - 2e-3
