@@ -69,6 +69,20 @@ def test_every_input_of_our_systems_is_connected_but_those_of_what_nobody_learns
     assert open_inputs(station, OURS) == [("mpc_controller", name) for name in learned]
 
 
+def test_the_noise_of_the_estimate_is_not_measured_as_driving():
+    scenario = Scenario(task="medication")
+    scenario.robot.position_noise, scenario.robot.yaw_noise = 0.1, 0.1
+    scenario.robot.initial_charge = 0.0  # It stands where it is.
+    station = mut.MakeCareStation(scenario)
+    simulator = Simulator(station)
+    simulator.AdvanceTo(1.0)
+    context = simulator.get_context()
+    time, safety, *_ = read(station, context, "feature_meter", "features")
+    assert time > 0.0
+    assert safety < 1e-6
+    assert np.hypot(*(read(station, context, "state_estimator", "robot_state")[:2])) > 0.01
+
+
 def displaced(**control):
     scenario = Scenario(task="meal")
     scenario.world.displaced_places = [DisplacedPlaceConfig("pantry", -0.5, 1.9)]

@@ -17,6 +17,7 @@ from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Task, TaskReport
 from mala_drake.randomness import keyed_generator
 from mala_drake.robot.action_marks import SUMMED, ActionMarks, mark_action
+from mala_drake.robot.plant_state import PLANT_STATE_SIZE, X, Y, yaw_of
 from mala_drake.ward.congestion import sample
 from mala_drake.ward.dishes import presentation_error
 from mala_drake.ward.features import (
@@ -68,7 +69,7 @@ class FeatureMeter(LeafSystem):
         - task
         - task_report
         - action
-        - robot_state
+        - plant_state
         - charge
         output_ports:
         - features
@@ -80,10 +81,11 @@ class FeatureMeter(LeafSystem):
     `action_features` are those of the newest action that has ended, unscaled, as long as the task report names it as
     the last one.
 
-    Between two ticks the robot is taken to drive straight, at constant speed, and the rates of
-    `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not counted as
-    negative use. The approach error is that of the pose from which things are handed over. A robot state that is not
-    finite, or farther away than the robot can have driven, adds time but no driving.
+    `plant_state` is the robot's own state port (see `mala_drake.robot.plant_state`), not what the robot believes: the
+    noise of an estimate is nobody's driving. Between two ticks the robot is taken to drive straight, at constant speed,
+    and the rates of `mala_drake.ward.features` are integrated along the chord. Charge that a charger gives back is not
+    counted as negative use. The approach error is that of the pose from which things are handed over. A state that is
+    not finite, or farther away than the robot can have driven, adds time but no driving.
 
     The ward may be busier on one day than on another, which nobody knows beforehand: then the risk of each episode is
     that of the map times a number that depends on the seed and the episode.
@@ -122,7 +124,7 @@ class FeatureMeter(LeafSystem):
         self._task = self.DeclareAbstractInputPort("task", Value(Task()))
         self._task_report = self.DeclareAbstractInputPort("task_report", Value(TaskReport()))
         self._action = self.DeclareAbstractInputPort("action", Value(Action()))
-        self._robot_state = self.DeclareVectorInputPort("robot_state", 6)
+        self._plant_state = self.DeclareVectorInputPort("plant_state", PLANT_STATE_SIZE)
         self._charge = self.DeclareVectorInputPort("charge", 1)
         self._sums = self.DeclareDiscreteState(_Sums.Zero()[:])
         self._marks = self.DeclareDiscreteState(ActionMarks.Zero()[:])
@@ -168,12 +170,12 @@ class FeatureMeter(LeafSystem):
         sums.risk_scale = 1.0 + self._risk_variation * generator.uniform(-1.0, 1.0)
         sums.begun = context.get_time()
         sums.charge_at_start = sums.charge = self._charge.Eval(context)[0]
-        sums.x, sums.y = self._robot_state.Eval(context)[:2]
+        sums.x, sums.y, _ = self._pose(context)
 
     def _integrate(self, context: Context, sums: Any) -> None:
         before = _Numbers._make(sums[:].tolist())
         elapsed = context.get_time() - before.begun - before.duration
-        x, y, yaw = self._robot_state.Eval(context)[:3].tolist()
+        x, y, yaw = self._pose(context)
         charge = self._charge.Eval(context).item()
         sums.duration = before.duration + elapsed
         if math.isfinite(charge):
@@ -193,6 +195,11 @@ class FeatureMeter(LeafSystem):
         if handing_over is not None:
             sums.approach_error = approach_error((x, y, yaw), self._ideal) + presentation_error(handing_over.dish)
         sums.x, sums.y = x, y
+
+    def _pose(self, context: Context) -> tuple[float, float, float]:
+        """Where the robot is: x and y in metres, yaw in radians."""
+        plant_state = self._plant_state.Eval(context).tolist()
+        return plant_state[X], plant_state[Y], yaw_of(plant_state)
 
     def _features(self, sums: Any, task: str) -> NDArray[np.float64]:
         measured = np.array([sums.duration, sums.risk, sums.charge_used, sums.discomfort, sums.approach_error])

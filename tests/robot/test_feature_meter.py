@@ -9,6 +9,7 @@ import mala_drake.robot.feature_meter as mut
 from mala_drake.clock import METER_OFFSET, TICK
 from mala_drake.errors import BadInput
 from mala_drake.messages import Action, ActionFeatures, ActionKind, EpisodeReport, Outcome, Task, TaskReport
+from mala_drake.robot.plant_state import PLANT_STATE_SIZE, QW, QZ, X, Y
 from mala_drake.ward.congestion import Congestion
 from mala_drake.ward.dishes import DISHES
 from mala_drake.ward.drive_path import make_drive_path
@@ -25,6 +26,12 @@ def sums_of(report):
     return {name: _UNCUT * feature for name, feature in zip(names, report.features, strict=True)}
 
 
+def plant_state_at(x, y, yaw):
+    state = np.zeros(PLANT_STATE_SIZE)
+    state[[X, Y, QW, QZ]] = x, y, math.cos(yaw / 2), math.sin(yaw / 2)
+    return state
+
+
 class Stage:
     """A meter whose inputs are in the test's hands, at the beginning of task 1."""
 
@@ -35,7 +42,7 @@ class Stage:
         self.task = self._fix("task", Value(Task(1, task)))
         self.report = self._fix("task_report", Value(TaskReport()))
         self.action = self._fix("action", Value(Action()))
-        self.robot_state = self._fix("robot_state", [*start, 0.0, 0.0, 0.0])
+        self.plant_state = self._fix("plant_state", plant_state_at(*start))
         self.charge = self._fix("charge", [charge])
         self.simulator.AdvanceTo(TICK / 2)
 
@@ -47,7 +54,7 @@ class Stage:
 
     def tick(self, *, pose=None, charge=None, action=None, arguments=()):
         if pose is not None:
-            self.robot_state.GetMutableData().get_mutable_value().SetFromVector([*pose, 0.0, 0.0, 0.0])
+            self.plant_state.GetMutableData().get_mutable_value().SetFromVector(plant_state_at(*pose))
         if charge is not None:
             self.charge.GetMutableData().get_mutable_value().SetFromVector([charge])
         if action is not None:
