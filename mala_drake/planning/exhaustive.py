@@ -92,7 +92,7 @@ def _shortest(edges: list[_Edge], count: int, budget: Budget) -> tuple[list[Numb
     parents: dict[int, _Edge] = {}
     for _ in range(count):
         changed = False
-        budget.check_time()
+        budget.tick()
         for edge in edges:
             start, end = distances[edge.start], distances[edge.end]
             if start is not None and (end is None or start + edge.cost < end):

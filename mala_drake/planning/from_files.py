@@ -28,7 +28,8 @@ def solve_files(
         domain: path of the domain file.
         problem: path of the problem file.
         weights: values of the fluents `(w0)`, `(w1)`, ... in order, or by name.
-        timeout: seconds of wall time for reading, grounding and search together.
+        timeout: seconds of wall time for reading, grounding and search together. Reading is not broken off: nothing is
+            begun after it if it took longer.
         search: `astar`, or `ucs` for blind uniform-cost search.
 
     Raises:

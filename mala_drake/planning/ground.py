@@ -104,9 +104,10 @@ class Grounder:
         static = frozenset(fact for fact in facts if fact[0] not in self.changing_predicates)
         seed = [*sorted(static), *sorted(("=" + each[0], *each[1:]) for each in defined)]
         seed += sorted(fact for fact in facts if fact[0] in self.changing_predicates)
-        rules = tuple(self._rule(schema, static) for schema in self._description.actions)
+        binder = _Binder(self._description, tick)
+        rules = tuple(self._rule(schema, static, binder) for schema in self._description.actions)
         bindings, reached = instantiate(rules, seed, tick)
-        builder = _Builder(self._description, self, reached, static)
+        builder = _Builder(binder, self, reached, static)
         actions = []
         for schema, objects in bindings:
             tick()
@@ -126,7 +127,7 @@ class Grounder:
 
         return expand(expression, ground_fluent)
 
-    def _rule(self, schema: ActionSchema, static: frozenset[Fact]) -> Rule:
+    def _rule(self, schema: ActionSchema, static: frozenset[Fact], binder: _Binder) -> Rule:
         conjuncts = list(_conjuncts(schema.precondition))
         needed = [each.expression for each in schema.effects if isinstance(each, syntax.SetFluent)]
         needed += [
@@ -142,7 +143,7 @@ class Grounder:
             return all(_may_hold(test, binding, static, self.changing_predicates) for test in tests)
 
         def added(binding: Binding) -> Iterable[Fact]:
-            for effect, extended in _expand_effects(self._description, schema.effects, binding):
+            for effect, extended in binder.expand(schema.effects, binding):
                 if isinstance(effect, syntax.SetFact) and effect.value:
                     yield (effect.atom.predicate, *_bound(effect.atom.terms, extended))
 
@@ -150,13 +151,36 @@ class Grounder:
         return Rule(schema, domains, tuple(dict.fromkeys(atoms)), check, added)
 
 
+@dataclass(frozen=True, slots=True)
+class _Binder:
+    """Binds what quantifiers range over; ticks at each binding, for there may be very many."""
+
+    description: Description
+    tick: Callable[[], None]
+
+    def bindings(self, variables: tuple[syntax.Parameter, ...], binding: Binding) -> Iterator[Binding]:
+        for objects in itertools.product(*(self.description.objects_of(each.types) for each in variables)):
+            self.tick()
+            yield {**binding, **{each.name: value for each, value in zip(variables, objects, strict=True)}}
+
+    def expand(
+        self, effects: Iterable[syntax.Effect], binding: Binding, *, into_conditional: bool = True
+    ) -> Iterator[tuple[syntax.Effect, Binding]]:
+        for effect in effects:
+            if isinstance(effect, syntax.ForEach):
+                for extended in self.bindings(effect.variables, binding):
+                    yield from self.expand(effect.effects, extended, into_conditional=into_conditional)
+            elif isinstance(effect, syntax.When) and into_conditional:
+                yield from self.expand(effect.effects, binding)
+            else:
+                yield effect, binding
+
+
 class _Builder:
     """Makes ground actions and conditions, leaving out what is settled by what is static or reached."""
 
-    def __init__(
-        self, description: Description, grounder: Grounder, reached: Collection[Fact], static: frozenset[Fact]
-    ) -> None:
-        self._description = description
+    def __init__(self, binder: _Binder, grounder: Grounder, reached: Collection[Fact], static: frozenset[Fact]) -> None:
+        self._binder = binder
         self._grounder = grounder
         self._reached = reached
         self._static = static
@@ -173,7 +197,7 @@ class _Builder:
         added: set[Fact] = set()
         deleted: set[Fact] = set()
         updates: list[Update] = []
-        for effect, extended in _expand_effects(self._description, effects, binding, into_conditional=False):
+        for effect, extended in self._binder.expand(effects, binding, into_conditional=False):
             if isinstance(effect, syntax.SetFact):
                 fact = (effect.atom.predicate, *_bound(effect.atom.terms, extended))
                 (added if effect.value else deleted).add(fact)
@@ -217,7 +241,7 @@ class _Builder:
             case syntax.And() | syntax.Or():
                 parts = [self.condition(part, binding, wanted=wanted) for part in tree.parts]
                 return conjunction(parts) if isinstance(tree, syntax.And) == wanted else disjunction(parts)
-        extended = _bindings(self._description, tree.variables, binding)
+        extended = self._binder.bindings(tree.variables, binding)
         parts = [self.condition(tree.part, each, wanted=wanted) for each in extended]
         return conjunction(parts) if isinstance(tree, syntax.ForAll) == wanted else disjunction(parts)
 
@@ -282,24 +306,6 @@ def _merged(effects: Iterable[Effect]) -> tuple[Effect, ...]:
 
 def _bound(terms: Iterable[str], binding: Mapping[str, str]) -> tuple[str, ...]:
     return tuple(binding[term] if term[0] == "?" else term for term in terms)
-
-
-def _bindings(description: Description, variables: tuple[syntax.Parameter, ...], binding: Binding) -> Iterator[Binding]:
-    for objects in itertools.product(*(description.objects_of(each.types) for each in variables)):
-        yield {**binding, **{each.name: value for each, value in zip(variables, objects, strict=True)}}
-
-
-def _expand_effects(
-    description: Description, effects: Iterable[syntax.Effect], binding: Binding, *, into_conditional: bool = True
-) -> Iterator[tuple[syntax.Effect, Binding]]:
-    for effect in effects:
-        if isinstance(effect, syntax.ForEach):
-            for extended in _bindings(description, effect.variables, binding):
-                yield from _expand_effects(description, effect.effects, extended, into_conditional=into_conditional)
-        elif isinstance(effect, syntax.When) and into_conditional:
-            yield from _expand_effects(description, effect.effects, binding)
-        else:
-            yield effect, binding
 
 
 def _simple_effects(effects: Iterable[syntax.Effect]) -> Iterator[syntax.SetFact | syntax.SetFluent]:

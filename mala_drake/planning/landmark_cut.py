@@ -9,7 +9,7 @@ ICAPS 2009. Numeric conditions, negative preconditions and disjunctions are take
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from mala_drake.planning.model import Model, State
 from mala_drake.planning.numbers import Number
@@ -25,9 +25,11 @@ class LandmarkCut:
 
     Args:
         model: the task with its numbers; no step of it may have a negative cost.
+        tick: called before each cut, for a bound in a large task may take seconds; may raise to give up.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, tick: Callable[[], None] = lambda: None) -> None:
+        self._tick = tick
         task = model.task
         assert task.goal is not None
         self._facts = len(task.facts) + _FIRST
@@ -64,6 +66,7 @@ class LandmarkCut:
         costs = list(self._costs)
         total: Number = 0
         while True:
+            self._tick()
             levels, supporters = self._hmax(start, costs)
             level = levels[_GOAL]
             if level is None:

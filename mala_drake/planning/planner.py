@@ -112,7 +112,7 @@ class Planner:
         if grounding.graph.explore(start[0], budget):
             heuristic = ProjectionHeuristic(grounding.graph, model)
         else:
-            heuristic = LandmarkCut(model)
+            heuristic = LandmarkCut(model, budget.tick)
         directions = grounding.resources.find(model, start)
         dominated: Dominated = ResourceDominance(directions, len(start[1])) if directions else no_dominance
         return best_first(model, start, heuristic=heuristic, dominated=dominated, budget=budget)

@@ -74,6 +74,7 @@ def best_first(
             known = costs.get(successor)
             if known is not None and known <= reached:
                 continue
+            budget.tick()  # A state may have many successors, and a bound may take long.
             bound = heuristic(successor)
             if bound is None or dominated(successor, reached):
                 continue

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from mala_drake.planning import Planner, PlanningTask
+from mala_drake.planning import Planner, PlanningTask, limits
 from mala_drake.planning.task_planner import TaskPlanner
 from mala_drake.ward.ward_map import Ward
 
@@ -47,3 +47,20 @@ def task_planner(ward: Ward) -> TaskPlanner:
 def bench(task_planner: TaskPlanner, ward: Ward) -> PlannerBench:
     """A bench of its own for each test."""
     return PlannerBench(task_planner, ward)
+
+
+class Clock:
+    """Stands for the module `time`; its seconds pass when a test says so."""
+
+    now = 0.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    """The clock that budgets look at, for one test."""
+    clock = Clock()
+    monkeypatch.setattr(limits, "time", clock)
+    return clock

@@ -72,3 +72,30 @@ def test_grounding_stops_when_the_time_is_up(load):
     fresh = PlanningTask(task.description)
     with pytest.raises(OutOfBudget):
         fresh.grounding(fresh.initial_state, Budget(timeout=0.0))
+
+
+@pytest.mark.parametrize(
+    ("precondition", "effect", "goal"),
+    [
+        ("(exists (?x ?y ?z) (and (p ?x) (p ?y) (p ?z)))", "(g)", "(g)"),
+        ("()", "(forall (?x ?y ?z) (when (p ?x) (g)))", "(g)"),
+        ("()", "(when (forall (?x ?y ?z) (p ?x)) (g))", "(g)"),
+        ("()", "(g)", "(forall (?x ?y ?z) (or (g) (p ?x)))"),
+    ],
+)
+def test_time_is_looked_at_for_everything_that_a_quantifier_ranges_over(precondition, effect, goal):
+    class Counting(Budget):
+        ticks = 0
+
+        def tick(self):
+            self.ticks += 1
+
+    objects = " ".join(f"o{index}" for index in range(10))
+    task = PlanningTask.parse(
+        f"""(define (domain d) (:predicates (p ?x) (g))
+          (:action a :precondition {precondition} :effect {effect}))""",
+        f"(define (problem p) (:domain d) (:objects {objects}) (:init (p o1)) (:goal {goal}))",
+    )
+    budget = Counting()
+    task.grounding(task.initial_state, budget)
+    assert budget.ticks >= 10**3

@@ -80,3 +80,17 @@ def test_larger_tasks_are_solved_with_few_expansions(request):
       (:goal (and {" ".join(f"(on {y} {x})" for x, y in pairs)})))"""
     plan = Planner(PlanningTask.parse(domain, problem)).solve(max_expansions=2000)
     assert (plan.status, plan.cost) == ("optimal", 16)
+
+
+def test_time_is_looked_at_before_each_cut_and_once_more():
+    task = PlanningTask.parse(
+        """(define (domain d) (:predicates (f) (g) (h))
+          (:action a :effect (f)) (:action b :precondition (f) :effect (g))
+          (:action c :precondition (g) :effect (h)))""",
+        "(define (problem p) (:domain d) (:goal (h)))",
+    )
+    model, start = search_space(task)
+    ticks = []
+    heuristic = mut.LandmarkCut(model, lambda: ticks.append(1))
+    assert model.numbers.exact(heuristic(start)) == 3
+    assert len(ticks) == 3 + 1

@@ -65,3 +65,26 @@ def test_no_way_to_the_goal_is_known_only_when_everything_was_seen(load):
     assert budget.expanded == 2  # In one room or the other.
     with pytest.raises(OutOfBudget):
         mut.best_first(model, start, budget=Budget(max_expansions=1))
+
+
+def test_no_bound_is_computed_after_the_time_is_up(clock):
+    # One expansion with a hundred successors, each bound of which takes a second.
+    adders = " ".join(f"(:action a{i} :effect (p{i}))" for i in range(100))
+    predicates = " ".join(f"(p{i})" for i in range(100))
+    task = PlanningTask.parse(
+        f"(define (domain d) (:predicates {predicates}) {adders})",
+        f"(define (problem p) (:domain d) (:init) (:goal (and {predicates})))",
+    )
+    grounding = task.grounding(task.initial_state)
+    model = Model(grounding.operators, grounding.table, task.initial_state.values)
+    calls = 0
+
+    def slow(state):
+        nonlocal calls
+        calls += 1
+        clock.now += 1.0
+        return 0
+
+    with pytest.raises(OutOfBudget):
+        mut.best_first(model, (0, ()), heuristic=slow, budget=Budget(timeout=3.5))
+    assert calls == 4  # Begun at 0, 1, 2 and 3 seconds.
