@@ -11,6 +11,7 @@ import logging
 import math
 import sys
 from collections.abc import Sequence
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -112,7 +113,11 @@ def plan(
         raise
     result = plan_to_json(found)
     if as_json:
-        typer.echo(json.dumps(result))
+        try:
+            typer.echo(json.dumps(result))
+        except ValueError:
+            digits = sys.get_int_max_str_digits()
+            raise BadInput(f"{problem}: :metric", f"a cost with more than {digits} digits", "smaller numbers") from None
     else:
         _print_plan(result)
     raise typer.Exit(0 if result["status"] == "optimal" else 1)
@@ -121,11 +126,18 @@ def plan(
 def _print_plan(result: dict[str, Any]) -> None:
     for step, action in enumerate(result["actions"], start=1):
         typer.echo(f"{step:3d}  {action}")
-    cost = "" if result["cost"] is None else f", cost {result['cost']:g}"
+    cost = "" if result["cost"] is None else f", cost {_rounded(result['cost'])}"
     times = (
         f"read {result['parse_ms']:.0f} ms, ground {result['ground_ms']:.0f} ms, search {result['search_ms']:.1f} ms"
     )
     typer.echo(f"{result['status']}{cost}; {result['expanded']} expanded; {times}")
+
+
+def _rounded(number: float) -> str:
+    try:
+        return f"{number:g}"
+    except OverflowError:  # A whole number beyond all floats.
+        return f"{Decimal(number):.5e}"
 
 
 @app.command()

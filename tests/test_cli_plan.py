@@ -93,3 +93,22 @@ def test_a_mistake_in_pddl_names_file_and_line(capfd, lamp, domain, words):
     line = mistake(capfd, "plan", *lamp(domain=domain))
     for word in words:
         assert word in line
+
+
+def dear_lamp(lamp, factors):
+    """A lamp whose switching costs a power of 1e999."""
+    price = f"(* {' '.join(['1e999'] * factors)})"
+    domain = DOMAIN.replace("(:action", "(:functions (c)) (:action")
+    domain = domain.replace(":effect (on)", f":effect (and (on) (increase (c) {price}))")
+    return lamp(init="(= (c) 0)) (:metric minimize (c)", domain=domain)
+
+
+def test_costs_that_no_float_can_hold_are_told(capfd, lamp):
+    status, output, errors = call(capfd, "plan", *dear_lamp(lamp, 2))
+    assert (status, errors) == (0, "")
+    assert "cost 1.00000e+1998;" in output
+    assert json.loads(call(capfd, "plan", *dear_lamp(lamp, 2), "--json")[1])["cost"] == 10**1998
+
+
+def test_costs_with_too_many_digits_for_json_are_a_mistake(capfd, lamp):
+    assert "problem.pddl: :metric: a cost with more than" in mistake(capfd, "plan", *dear_lamp(lamp, 5), "--json")

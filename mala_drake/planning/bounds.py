@@ -31,7 +31,7 @@ class Interval:
     high: Bound
 
     def __add__(self, other: Interval) -> Interval:
-        return Interval(self.low + other.low, self.high + other.high)
+        return Interval(_sum(self.low, other.low), _sum(self.high, other.high))
 
     def __mul__(self, other: Interval) -> Interval:
         corners = [_product(a, b) for a in (self.low, self.high) for b in (other.low, other.high)]
@@ -190,5 +190,18 @@ def _fill_in(polynomial: Polynomial, values: Mapping[Fact, Fraction]) -> Polynom
     return total
 
 
+# A fraction may be too large for a float, so it is never added to an infinity or multiplied by one.
+
+
+def _sum(left: Bound, right: Bound) -> Bound:
+    if isinstance(left, float):
+        return left
+    return right if isinstance(right, float) else left + right
+
+
 def _product(left: Bound, right: Bound) -> Bound:
-    return Fraction(0) if left == 0 or right == 0 else left * right
+    if left == 0 or right == 0:
+        return Fraction(0)
+    if isinstance(left, float) or isinstance(right, float):
+        return math.inf if (left > 0) == (right > 0) else -math.inf
+    return left * right

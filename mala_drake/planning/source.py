@@ -12,7 +12,8 @@ from mala_drake.errors import BadInput
 _TOKEN = re.compile(r"[()]|;[^\n]*|[^\s();]+")
 _NAME = re.compile(r"[a-z][a-z0-9_-]*")
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d{1,3})?")
-_DEEPEST = 200  # Levels of parentheses; real files have about ten, and recursion over the tree must stay safe.
+# Levels of parentheses. Real files have about ten; each may take Python seven levels of recursion, of a thousand.
+_DEEPEST = 100
 
 
 @dataclass(frozen=True, slots=True)

@@ -86,5 +86,7 @@ def as_exact(value: Amount, *, where: str) -> Fraction:
     if not isinstance(value, Decimal | str | bool | int | Fraction):
         number = float(value)
         if math.isfinite(number):
-            return Fraction(round(number * 10**DECIMALS), 10**DECIMALS)
+            scaled = number * 10**DECIMALS
+            # Where that is beyond all floats, the number is so large that it is whole.
+            return Fraction(round(scaled), 10**DECIMALS) if math.isfinite(scaled) else Fraction(number)
     raise BadInput(where, f"value {value}", "a finite number")

@@ -1,5 +1,8 @@
 """What is claimed never to gain never gains: claims against the steps of whole state spaces, and doubts where due."""
 
+import math
+from fractions import Fraction
+
 import pytest
 
 import mala_drake.planning.bounds as mut
@@ -31,6 +34,7 @@ def claim(effect, metric, *, precondition="(< (n) 4)", init="(= (n) 0) (= (x) 1)
         ("(when (p) (increase (c) 1))", "minimize (c)"),
         ("(and (increase (c) 2) (when (p) (decrease (c) 1)))", "minimize (c)"),
         ("(decrease (x) 1)", "minimize (- (c) (x))"),
+        ("(and (increase (x) 1e400) (increase (c) (x)))", "minimize (+ (c) (* (x) (x)))"),
     ],
 )
 def test_growing_metrics_are_recognised(effect, metric):
@@ -48,6 +52,7 @@ def test_growing_metrics_are_recognised(effect, metric):
         ("(decrease (y) 1)", "minimize (* (n) (y))"),
         ("(increase (x) 1)", "minimize (/ (y) (x))"),
         ("(scale-up (x) -1)", "minimize (* (n) (x))"),
+        ("(and (increase (x) 1e400) (increase (c) (x)))", "minimize (- (c) (* (x) (x)))"),
     ],
 )
 def test_metrics_that_may_fall_are_not_claimed(effect, metric):
@@ -72,3 +77,22 @@ def test_ranges_hold_for_every_reachable_value():
         state = task.apply(state, action)
         for fluent, interval in ranges.items():
             assert interval.low <= state.value(fluent) <= interval.high
+
+
+HUGE = Fraction(10) ** 400  # No float is as large.
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "total", "product"),
+    [
+        ((HUGE, HUGE), (1, math.inf), (HUGE + 1, math.inf), (HUGE, math.inf)),
+        ((-HUGE, -HUGE), (1, math.inf), (1 - HUGE, math.inf), (-math.inf, -HUGE)),
+        ((-HUGE, HUGE), (-math.inf, -1), (-math.inf, HUGE - 1), (-math.inf, math.inf)),
+        ((0, HUGE), (-math.inf, math.inf), (-math.inf, math.inf), (-math.inf, math.inf)),
+        ((-math.inf, -2), (-math.inf, -HUGE), (-math.inf, -HUGE - 2), (2 * HUGE, math.inf)),
+    ],
+)
+def test_numbers_beyond_all_floats_and_infinities_go_together(left, right, total, product):
+    a, b = mut.Interval(*left), mut.Interval(*right)
+    assert a + b == b + a == mut.Interval(*total)
+    assert a * b == b * a == mut.Interval(*product)

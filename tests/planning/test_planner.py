@@ -225,3 +225,25 @@ def test_products_and_quotients_of_fluents_in_the_metric():
       (:metric minimize (/ (size) (steps))))"""
     quotient = mut.Planner(PlanningTask.parse(domain, problem)).solve()
     assert (quotient.status, quotient.cost, len(quotient.actions)) == ("optimal", Fraction(3, 5), 5)
+
+
+@pytest.mark.parametrize("wrap", ["(/ 1 {})", "(+ 1 {})", "(* (x) {})", "(- {})"])
+def test_what_is_nested_as_deeply_as_may_be_is_solved_even_deep_in_a_program(wrap):
+    expression = "(x)"
+    for _ in range(95):
+        expression = wrap.format(expression)
+    domain = f"""(define (domain d) (:predicates (p ?y) (g)) (:functions (x))
+      (:action a :parameters (?y) :precondition (and (p ?y) (<= {expression} 1000))
+        :effect (and (g) (increase (x) {expression}))))"""
+
+    def deep(levels):
+        if levels:
+            return deep(levels - 1)
+        # Of two objects: what is equal in two actions is compared.
+        problem = "(define (problem p) (:domain d) (:objects a b) (:init (p a) (p b) (= (x) 1)) (:goal (g)))"
+        return mut.Planner(PlanningTask.parse(domain, problem)).solve()
+
+    assert deep(100).cost == 1
+    domain = domain.replace("(x)", "(+ (x))")
+    with pytest.raises(BadInput, match="nested more than"):
+        deep(0)

@@ -27,7 +27,7 @@ def test_every_word_knows_its_place():
         ("(define (a)", "f:1:1: '(' is never closed"),
         ("(define\n))", "f:2:2: ')' without"),
         ("define", "f:1:1: not a PDDL definition"),
-        ("(" * 300, "f:1:201: parentheses nested"),
+        ("(" * 300, "f:1:101: parentheses nested"),
     ],
 )
 def test_unbalanced_text_is_refused(text, line):

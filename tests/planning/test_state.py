@@ -33,6 +33,11 @@ def test_values_are_exact_and_floats_rounded_to_the_grid():
     assert STATE.value("(unknown)") is None
 
 
+@pytest.mark.parametrize("value", [1e303, -1.7e308])
+def test_the_largest_floats_are_whole_numbers_already(value):
+    assert mut.as_exact(value, where="x") == Fraction(value)
+
+
 @given(st.floats(-1e6, 1e6))
 def test_rounding_moves_a_float_by_half_a_step_at_most(value):
     # The float itself may be off the true product by an ulp, hence the slack.
