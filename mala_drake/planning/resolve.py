@@ -75,9 +75,9 @@ class Resolver:
         left, right = (self.expression(operand, scope) for operand in tree.operands)
         return syntax.Comparison(_COMPARISONS[type(tree)], left, right)
 
-    def atom(self, tree: Any, scope: Scope) -> syntax.Atom:
-        """An atom of a declared predicate."""
-        return syntax.Atom(*self._application(tree, "predicate", self._predicates, scope))
+    def atom(self, tree: Any, scope: Scope, *, wide: bool = True) -> syntax.Atom:
+        """An atom of a declared predicate; its variables may be of wider types than the predicate's only if `wide`."""
+        return syntax.Atom(*self._application(tree, "predicate", self._predicates, scope, wide=wide))
 
     def expression(self, tree: Any, scope: Scope) -> syntax.Expression:
         """A numeric expression; its numbers are exact."""
@@ -103,15 +103,16 @@ class Resolver:
                 variables, inner = self._bind(tree.variables, scope)
                 return (syntax.ForEach(variables, self.effects(tree.effect, inner)),)
             case base.Not():
-                return (syntax.SetFact(self.atom(tree.argument, scope), False),)
+                return (syntax.SetFact(self.atom(tree.argument, scope, wide=False), False),)
             case predicates.Predicate():
-                return (syntax.SetFact(self.atom(tree, scope), True),)
+                return (syntax.SetFact(self.atom(tree, scope, wide=False), True),)
         head, value = tree.operands
-        fluent = self.expression(head, scope)
-        assert isinstance(fluent, syntax.Fluent)
+        fluent = syntax.Fluent(*self._application(head, "function", self._functions, scope, wide=False))
         return (syntax.SetFluent(_ASSIGNMENTS[type(tree)], fluent, self.expression(value, scope)),)
 
-    def _application(self, tree: Any, kind: str, declared: Signatures, scope: Scope) -> tuple[str, tuple[str, ...]]:
+    def _application(
+        self, tree: Any, kind: str, declared: Signatures, scope: Scope, *, wide: bool = True
+    ) -> tuple[str, tuple[str, ...]]:
         name, place = label_name(tree.name), labelled_symbol(self._source, tree.name)
         if name not in declared:
             raise self._source.mistake(place, f"undeclared {kind} '{name}'", f"one declared in :{kind}s")
@@ -121,9 +122,11 @@ class Resolver:
         terms = []
         for term, allowed in zip(tree.terms, signature, strict=True):
             text, types = self._term(term, scope)
-            # A variable may be of a wider type than the predicate's: the atom is then false for what does not fit.
-            fits = all if text[0] != "?" else any
-            if not fits(self._related(each, allowed, wider=text[0] == "?") for each in types):
+            # What is read may have variables of wider types: for objects that do not fit an atom is false and a fluent
+            # undefined, since :init and effects, which must fit, never set them.
+            wider = wide and text[0] == "?"
+            fits = any if wider else all
+            if not fits(self._related(each, allowed, wider=wider) for each in types):
                 symbol = labelled_symbol(self._source, term.name)
                 raise self._source.mistake(
                     symbol, f"{text} of type {' or '.join(types)} in '{name}'", f"type {' or '.join(allowed)}"

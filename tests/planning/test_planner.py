@@ -247,3 +247,13 @@ def test_what_is_nested_as_deeply_as_may_be_is_solved_even_deep_in_a_program(wra
     domain = domain.replace("(x)", "(+ (x))")
     with pytest.raises(BadInput, match="nested more than"):
         deep(0)
+
+
+def test_an_atom_is_false_for_objects_that_are_not_of_its_type():
+    domain = """(define (domain d) (:types apple car) (:predicates (ripe ?x - apple) (sold))
+      (:action ripen :parameters (?x - apple) :effect (ripe ?x))
+      (:action sell :precondition (forall (?x - (either apple car)) (ripe ?x)) :effect (sold)))"""
+    problem = "(define (problem p) (:domain d) (:objects a - apple OTHER) (:goal (sold)))"
+    apples, with_car = (PlanningTask.parse(domain, problem.replace("OTHER", each)) for each in ("", "c - car"))
+    assert mut.Planner(apples).solve().actions == ("(ripen a)", "(sell)")
+    assert mut.Planner(with_car).solve().status == "unsolvable"

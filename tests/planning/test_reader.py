@@ -179,6 +179,13 @@ def test_reading_leaves_tracebacks_alone_and_survives_a_mistake():
         ({"effect": "(increase (size))"}, "d.pddl:9:13", "'increase' with 1 arguments"),
         ({"effect": "(increase (size) (+))"}, "d.pddl:9:30", "'+' with 0 operands"),
         ({"effect": "(not (not (open)))"}, "d.pddl:9:18", "'not' out of place"),
+        (
+            {"effect": "(forall (?v - (either truck place)) (at ?v ?p))"},
+            "d.pddl:9:53",
+            "?v of type place or truck in 'at'; expected type vehicle",
+        ),
+        ({"effect": "(forall (?v) (when (at ?v ?p) (not (at ?v ?p))))"}, "d.pddl:9:52", "?v of type object in 'at'"),
+        ({"effect": "(forall (?v) (increase (fuel ?v) 1))"}, "d.pddl:9:42", "?v of type object in 'fuel'"),
         ({"init": "(at t)"}, "p.pddl:3:38", "'at' with 1 arguments"),
         ({"init": "(at home home)"}, "p.pddl:3:41", "home of type place in 'at'; expected type vehicle"),
         ({"init": "(at t moon)"}, "p.pddl:3:43", "undeclared object 'moon'"),
