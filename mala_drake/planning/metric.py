@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from mala_drake.planning.ground import Condition, GroundTask, Update
+from mala_drake.planning.ground_task import Condition, GroundTask, Update
 from mala_drake.planning.polynomial import FLUENT, Polynomial, constant, is_static
 from mala_drake.planning.syntax import Fact
 

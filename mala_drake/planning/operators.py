@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from mala_drake.planning import ground
-from mala_drake.planning.ground import GroundTask
+from mala_drake.planning import ground_task
+from mala_drake.planning.ground_task import GroundTask
 from mala_drake.planning.metric import ZERO, CostSplit
 from mala_drake.planning.polynomial import Polynomial
 from mala_drake.planning.syntax import Fact
@@ -22,7 +22,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A `ground.Condition` whose facts are bits."""
+    """A `ground_task.Condition` whose facts are bits."""
 
     positive: int
     negative: int
@@ -149,24 +149,24 @@ class _Compiler:
         self.fluents: dict[Fact, int] = {}
         self.polynomials: dict[Polynomial, int] = {}
 
-    def condition(self, condition: ground.Condition) -> Condition:
+    def condition(self, condition: ground_task.Condition) -> Condition:
         choices = tuple(tuple(self.condition(part) for part in choice) for choice in condition.choices)
         comparisons = tuple(Comparison(self.number(each.polynomial), each.operator) for each in condition.comparisons)
         return Condition(self._bits(condition.positive), self._bits(condition.negative), comparisons, choices)
 
     def operator(
-        self, index: int, action: ground.GroundAction, precondition: Condition, guards: list[Condition]
+        self, index: int, action: ground_task.GroundAction, precondition: Condition, guards: list[Condition]
     ) -> Operator:
         always = Effect(_NOTHING, 0, 0, (), self._cost(self._split.step))
         sometimes = []
         for effect, guard in zip(action.effects, guards, strict=True):
-            if effect.condition == ground.TRUE:
+            if effect.condition == ground_task.TRUE:
                 always = self._effect(effect, guard, self._split.step)
             else:
                 sometimes.append(self._effect(effect, guard, ZERO))
         return Operator(index, action.name, precondition, always, tuple(sometimes))
 
-    def _effect(self, effect: ground.Effect, guard: Condition, base: Polynomial) -> Effect:
+    def _effect(self, effect: ground_task.Effect, guard: Condition, base: Polynomial) -> Effect:
         split = self._split
         kept = [each for each in effect.updates if each.fluent not in split.weights]
         updates = tuple(Update(self.fluent(each.fluent), each.kind, self.number(each.value)) for each in kept)

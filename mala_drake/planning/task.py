@@ -9,7 +9,8 @@ from pathlib import Path
 
 from mala_drake.errors import BadInput
 from mala_drake.planning.dominance import ResourceFinder
-from mala_drake.planning.ground import Grounder, GroundTask
+from mala_drake.planning.ground import Grounder
+from mala_drake.planning.ground_task import GroundTask
 from mala_drake.planning.interpreter import Interpreter
 from mala_drake.planning.limits import Budget
 from mala_drake.planning.metric import CostSplit, split_metric

@@ -18,7 +18,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from mala_drake.planning.ground import Condition, GroundAction, GroundTask
+from mala_drake.planning.ground_task import Condition, GroundAction, GroundTask
 from mala_drake.planning.syntax import Fact
 from mala_drake.planning.task import PlanningTask
 

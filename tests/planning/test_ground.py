@@ -4,7 +4,6 @@ import itertools
 
 import pytest
 
-import mala_drake.planning.ground as mut
 from mala_drake.planning import PlanningTask
 from mala_drake.planning.limits import Budget, OutOfBudget
 
@@ -55,16 +54,6 @@ def test_types_subtypes_and_either_restrict_parameters():
       (:action some :parameters (?x - (either bus stone)) :effect (used ?x)))"""
     problem = "(define (problem p) (:domain d) (:objects b - bus c - car s - stone v - vehicle) (:goal (used v)))"
     assert actions_of(domain, problem) == ["(any b)", "(any c)", "(any v)", "(some b)", "(some s)"]
-
-
-def test_conditions_are_settled_by_what_is_static():
-    truth = mut.Condition()
-    assert mut.conjunction([truth, truth]) == truth
-    assert mut.conjunction([truth, None]) is None
-    assert mut.disjunction([None, truth]) == truth
-    assert mut.disjunction([None, None]) is None
-    fact = frozenset({("p",)})
-    assert mut.conjunction([mut.Condition(positive=fact), mut.Condition(negative=fact)]) is None
 
 
 def test_grounding_stops_when_the_time_is_up(load):
